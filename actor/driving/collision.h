@@ -1,0 +1,34 @@
+// Who hit whom. Rectangles along the road, tested at every step: SUMO's own report misses some.
+#pragma once
+
+#include <optional>
+
+#include "actor/driving/scene.h"
+#include "proto/settings.h"
+
+namespace corridor::driving {
+
+enum class CollisionKind {
+  kRearEnded = 0,    // another vehicle ran into the ego from behind
+  kRearEnding = 1,   // the ego ran into another vehicle
+  kSideByOther = 2,  // another vehicle moved sideways into the ego
+  kSideByEgo = 3,    // the ego moved sideways into another vehicle
+};
+inline constexpr int kCollisionKinds = 4;
+// "rear_ended", "rear_ending", "side_by_other", "side_by_ego"
+const char* collision_kind_name(CollisionKind kind);
+
+struct Collision {
+  CollisionKind kind = CollisionKind::kRearEnded;
+  int other = 0;  // id
+  bool operator==(const Collision&) const = default;
+};
+
+// The first (lowest id) vehicle that overlaps the ego in `after`, if any. Where the two already
+// overlapped across the road one step earlier (`before`), it is a rear collision, by whoever is
+// behind; otherwise a side collision, by whoever moved further towards the other across the road
+// in this step. A vehicle that is not in `before` is judged by its present lateral speed.
+std::optional<Collision> find_collision(const Scene& before, const Scene& after,
+                                        const EgoSettings& ego);
+
+}  // namespace corridor::driving

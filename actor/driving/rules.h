@@ -1,0 +1,57 @@
+// The rule-based planners (paper section IV: "achieve similar goals as the reward"), with the same
+// actions as the learned ones, and the random BP that the MoP is trained under.
+#pragma once
+
+#include "actor/driving/planner.h"
+#include "proto/settings.h"
+
+namespace corridor::driving {
+
+// Changes to the left when the own lane's leader is too slow and the left lane promises more and
+// has room; goes back right when nothing is in its way there. Keeps asking until the ego has
+// arrived, and cancels when the room is gone.
+class RuleBasedBp : public BehaviourPlanner {
+ public:
+  explicit RuleBasedBp(const DrivingSettings& settings);
+  void begin_episode(std::uint64_t episode_seed) override;
+  Command decide(const Situation& situation) override;
+
+ private:
+  DrivingSettings settings_;
+  Lanes lanes_;
+  int goal_lane_ = -1;  // of the change under way; -1: none
+};
+
+// Moves towards the window's middle when the corridors there are free enough, otherwise to the
+// safest; chooses the set-point that keeps the headway to whatever is ahead in the swath.
+class RuleBasedMop : public MotionPlanner {
+ public:
+  explicit RuleBasedMop(const DrivingSettings& settings);
+  int decide(const Situation& situation, const Window& window) override;
+
+ private:
+  DrivingSettings settings_;
+  Lanes lanes_;
+};
+
+// Asks for a lane change about every hundred steps, and in between for periods of short random
+// commands, since a trained BP flickers ([random_bp]). A function of (episode seed, step, lane).
+class RandomBp : public BehaviourPlanner {
+ public:
+  explicit RandomBp(const DrivingSettings& settings);
+  void begin_episode(std::uint64_t episode_seed) override;
+  Command decide(const Situation& situation) override;
+
+ private:
+  DrivingSettings settings_;
+  Lanes lanes_;
+  std::uint64_t seed_ = 0;
+  std::uint64_t draws_ = 0;
+  int goal_lane_ = -1;
+  bool flickers_ = false;
+  int period_ends_ = 0;   // step
+  int command_ends_ = 0;  // step, while flickering
+  Command command_ = Command::kKeep;
+};
+
+}  // namespace corridor::driving

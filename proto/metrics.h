@@ -1,0 +1,31 @@
+// Named numbers over training steps, one JSON object a line; names as in CleanRL and TensorBoard
+// ("charts/SPS", "losses/td_loss", "replay/size").
+#pragma once
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace corridor {
+
+class MetricsWriter {
+ public:
+  // Appends. Throws Failure when the file cannot be opened.
+  explicit MetricsWriter(const std::filesystem::path& file);
+
+  // {"phase":"MoP","round":7,"step":3584,"time_s":1.25,<name>:<value>,...}. `step` counts the
+  // phase's environment steps of all actors; time_s is seconds since the writer was made and the
+  // only thing in the line that differs between two equal runs (together with *_s and */SPS).
+  // Flushed at once. Throws Failure when the disk is full.
+  void write(const char* phase, std::uint64_t round, std::int64_t step,
+             const std::vector<std::pair<std::string, double>>& values);
+
+ private:
+  std::filesystem::path file_;
+  std::ofstream out_;
+  double start_s_;
+};
+
+}  // namespace corridor

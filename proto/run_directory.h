@@ -1,0 +1,78 @@
+// Where everything of a run lies, and how files get there whole.
+//
+//   config.toml                  the resolved scenario
+//   manifest.json                run id, seed, versions, host
+//   sumo/                        network and traffic for SUMO (scenarios/)
+//   log/<process>.log            one text log a process
+//   metrics/<process>.jsonl      one JSON-lines file a process (proto/metrics.h)
+//   checkpoints/<round>/         learner.safetensors, replay.safetensors, manifest.json
+//   checkpoints/CURRENT          name of the newest valid checkpoint
+//   evaluation/                  <planner>_<seed>.json; episodes/<planner>_<seed>_<episode>.json
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <nlohmann/json_fwd.hpp>
+
+namespace corridor {
+
+// Writes beside the target, syncs and renames: readers see the old file or the new one, whole.
+// Throws Failure (disk full, read-only ...) with the path and the system's reason; the old file is
+// then untouched and nothing is left beside it.
+void write_file(const std::filesystem::path& file, std::string_view content);
+// Throws Failure when missing or unreadable.
+std::string read_file(const std::filesystem::path& file);
+// Throws Failure naming the file when missing or not JSON.
+nlohmann::json read_json(const std::filesystem::path& file);
+
+class RunDirectory {
+ public:
+  // Throws Failure when it exists already (naming what to do) or cannot be created.
+  static RunDirectory create(const std::filesystem::path& root);
+  // Throws Failure when it is missing or no run directory (no config.toml or manifest.json).
+  static RunDirectory open(const std::filesystem::path& root);
+
+  const std::filesystem::path& root() const { return root_; }
+  std::filesystem::path config() const { return root_ / "config.toml"; }
+  std::filesystem::path manifest() const { return root_ / "manifest.json"; }
+  std::filesystem::path network() const { return root_ / "sumo" / "road.net.xml"; }
+  std::filesystem::path routes() const { return root_ / "sumo" / "traffic.rou.xml"; }
+  std::filesystem::path log(std::string_view process) const;
+  std::filesystem::path metrics(std::string_view process) const;
+  std::filesystem::path evaluation() const { return root_ / "evaluation"; }
+  std::filesystem::path episodes() const { return root_ / "evaluation" / "episodes"; }
+
+  // Checkpoints. A new one is filled under a temporary name and becomes valid by `commit`.
+  std::filesystem::path begin_checkpoint(std::uint64_t round) const;  // an empty directory
+  // Writes manifest.json (round, phase, size and XXH3 of each file), renames the directory into
+  // place, points CURRENT at it, and removes all but the newest `kept`.
+  void commit_checkpoint(std::uint64_t round, int kept) const;
+  // The checkpoint that CURRENT names, its files' sizes and hashes checked; nothing when there is
+  // none yet. Throws Failure naming the damaged file.
+  std::optional<std::filesystem::path> newest_checkpoint() const;
+
+ private:
+  explicit RunDirectory(std::filesystem::path root) : root_(std::move(root)) {}
+  std::filesystem::path root_;
+};
+
+// manifest.json of a run, as every process needs it.
+struct RunManifest {
+  std::string run_id;
+};
+RunManifest read_manifest(const RunDirectory& directory);
+
+struct Addresses {
+  std::string replay;
+  std::string learner;
+};
+struct RunSettings;
+// From [run] and the run id (of which ipc names show a hash only: the id is what lets one in).
+Addresses addresses(const RunSettings& settings, const std::string& run_id);
+
+}  // namespace corridor

@@ -1,0 +1,219 @@
+// A scenario as plain values: one struct a component, each with the defaults that work. The TOML
+// file's tables and keys have the same names (proto/run_config.h reads, checks and writes them);
+// units stand last in names. A component is handed its own structs only.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "proto/transition.h"
+
+namespace corridor {
+
+// [road] One straight edge. Lanes count from the right, 0 first.
+struct RoadSettings {
+  int lanes = 3;
+  double lane_width_m = 3.2;  // a multiple of simulation.lateral_resolution_m
+  double length_m = 20000.0;  // an episode at the speed limit must fit
+  double speed_limit_mps = 13.89;
+};
+
+// [simulation] SUMO and the clock of both planners.
+struct SimulationSettings {
+  double step_s = 1.0;
+  int episode_steps = 1000;  // an episode ends by a collision or after so many steps
+  double lateral_resolution_m = 0.8;
+};
+
+// [traffic] A treadmill: the traffic within `window_m` of the ego is kept up around it.
+struct TrafficSettings {
+  double window_m = 125.0;
+  int vehicles_min = 13;  // drawn once an episode
+  int vehicles_max = 15;
+  double slow_share = 0.3;  // cars with speed factor `slow_speed_factor`
+  double slow_speed_factor = 0.5;
+  double truck_share = 0.1;
+  double truck_speed_factor = 0.58;
+  // The other cars' speed factor: normal, cut off at both ends.
+  double speed_factor_mean = 0.8;
+  double speed_factor_deviation = 0.15;
+  double speed_factor_min = 0.4;
+  double speed_factor_max = 1.15;
+  double keep_right = 1.0;  // SUMO's lcKeepRight
+  // Blind drivers: a neighbour of the ego that changes into its lane without looking. SUMO's own
+  // drivers almost never hit the ego; those of the paper did.
+  double blind_rate_per_s = 0.03;
+  double blind_duration_s = 4.0;
+  double blind_range_m = 15.0;  // of the ego, along the road
+};
+
+// [ego] The car that is driven, and its kinematic limits.
+struct EgoSettings {
+  double length_m = 5.0;
+  double width_m = 1.8;
+  double acceleration_max_mps2 = 2.5;
+  double deceleration_max_mps2 = 6.0;
+};
+
+// [planner] The state-action abstraction of paper section III-C.
+struct PlannerSettings {
+  int corridors_per_lane = 5;                               // N_c: odd, so that there is a middle
+  std::vector<double> speed_changes_mps = {-4.0, 0.0, 2.0};  // of the set-point, ascending
+  double corridor_change_s = 1.0;                           // time to move over by one corridor
+  double gap_range_m = 100.0;
+  double side_clearance_m = 0.15;  // added to each side of the ego in a corridor's swath
+  double look_ahead_s = 1.0;       // others occupy what their lateral speed reaches by then
+};
+
+// [mop_reward] Paper section III-C; d = headway_s * v + standstill_gap_m.
+struct MopRewardSettings {
+  double speed_tolerance_mps = 1.5;
+  double headway_s = 1.2;  // tau
+  double standstill_gap_m = 3.0;  // d0
+  // The smallest front gap is near d when in [near_low * d, near_high * d + near_high_offset_m].
+  double near_low = 0.6;
+  double near_high = 1.5;
+  double near_high_offset_m = 5.0;
+  double acceleration_penalty = 0.02;  // for each m/s2
+};
+
+// [bp_reward] Paper section III-B.
+struct BpRewardSettings {
+  std::vector<double> thresholds_mps = {10.0, 11.0, 12.0};  // one a lane, from the right
+  double left_change = -5.0;
+  // Added on a collision in training only; not in the paper, never part of a reported reward.
+  double collision_shaping = -10.0;
+};
+
+// [rules] The rule-based planners (actor/driving/rules.h).
+struct RulesSettings {
+  double slow_leader_mps = 1.0;      // leave a lane whose leader is this much below the target
+  double leader_range_m = 50.0;      // leaders further away do not matter
+  double gain_mps = 1.0;             // a lane must promise this much more to change to it
+  double front_gap_s = 0.8;          // the least gap to change into, ahead, at ego speed
+  double back_gap_s = 0.6;           // and behind, at the follower's speed
+  double gap_min_m = 4.0;
+  double return_right_s = 3.0;       // go back right when nothing is nearer ahead than this
+};
+
+// [random_bp] The behaviour planner that asks while the MoP is trained (paper section III-D).
+struct RandomBpSettings {
+  int hold_steps_min = 40;  // between two lane changes
+  int hold_steps_max = 160;
+  double flicker_share = 0.2;  // of the periods: short random commands, as a trained BP's
+  int flicker_steps = 30;      // length of such a period
+  int flicker_hold_max = 4;    // longest command in it
+};
+
+// [mop], [bp] One deep Q-network and its training.
+struct DqnSettings {
+  std::int64_t steps = 1'000'000;  // environment steps of the phase, all actors together
+  std::vector<int> hidden = {64, 64};
+  bool dueling = false;
+  bool double_q = true;
+  double gamma = 0.97;
+  int n_step = 4;
+  double reward_scale = 0.03;
+  int batch_size = 64;
+  double samples_per_insert = 32.0;  // the replay ratio: rows trained on for each row stored
+  int target_copy_updates = 1000;
+  double learning_rate = 5e-4;  // falls linearly over the phase
+  double learning_rate_end = 5e-5;
+  double adam_epsilon = 1e-8;
+  double huber_delta = 1.0;
+  double gradient_norm_max = 10.0;
+  // Exploration: linear from `epsilon` to `epsilon_end` in `epsilon_steps` (of the phase, all
+  // actors together). Actor i of N ends at epsilon_end^(1 + epsilon_ladder * i / (N - 1)).
+  double epsilon = 1.0;
+  double epsilon_end = 0.02;
+  std::int64_t epsilon_steps = 100'000;
+  double epsilon_ladder = 0.4;
+  int exploration_hold_max = 1;  // exploratory actions are held 1 to so many steps
+  // Prioritized replay (Schaul et al. 2016).
+  std::int64_t capacity = 200'000;
+  std::int64_t minimum_size = 5'000;
+  double priority_exponent = 0.6;  // alpha
+  double importance_exponent = 0.4;  // beta, rises linearly over the phase
+  double importance_exponent_end = 1.0;
+  double priority_offset = 1e-3;  // added to |TD error|, so that nothing is never drawn
+
+  NetworkShape network(PlannerShape shape) const {
+    return {shape.observations, hidden, shape.actions, dueling};
+  }
+};
+
+// [schedule] Rounds, evaluation during training, checkpoints (docs/architecture.md, "Lockstep").
+struct ScheduleSettings {
+  int steps_per_round = 256;            // of each actor: one chunk
+  std::int64_t selection_every_steps = 100'000;  // greedy evaluation; all actors together
+  int selection_episodes = 16;          // on seeds of its own, the same each time
+  double selection_collision_cost = 50.0;  // best = reward - cost * collisions, per 1000 steps
+  std::int64_t checkpoint_every_steps = 100'000;
+  int checkpoints_kept = 2;
+};
+
+// [evaluation] What `corridor evaluate` does unless told otherwise.
+struct EvaluationSettings {
+  std::int64_t steps = 40'000;  // for each planner pair and seed
+  std::vector<std::uint64_t> seeds = {1001};
+};
+
+// [run] Where, with how many, and how long to wait.
+struct RunSettings {
+  std::uint64_t seed = 1;
+  int actors = 2;
+  std::string device = "cpu";     // of the learner: "cpu" or "cuda"
+  std::string transport = "ipc";  // "ipc": abstract Unix sockets, no files; "tcp": the ports below
+  std::string host = "127.0.0.1";
+  int replay_port = 5701;
+  int learner_port = 5702;
+  double peer_timeout_s = 30.0;  // a peer silent for so long is lost
+  double delay_ms_max = 0.0;     // tests: every process sleeps at random up to this, each round
+};
+
+// A whole scenario. Immutable once read.
+struct RunConfig {
+  RoadSettings road;
+  SimulationSettings simulation;
+  TrafficSettings traffic;
+  EgoSettings ego;
+  PlannerSettings planner;
+  MopRewardSettings mop_reward;
+  BpRewardSettings bp_reward;
+  RulesSettings rules;
+  RandomBpSettings random_bp;
+  std::array<DqnSettings, kPhases> dqn;  // [mop], [bp]
+  ScheduleSettings schedule;
+  EvaluationSettings evaluation;
+  RunSettings run;
+
+  const DqnSettings& phase(Phase which) const { return dqn[static_cast<std::size_t>(which)]; }
+  PlannerShape shape(Phase which) const {
+    return which == Phase::kMop
+               ? mop_shape(planner.corridors_per_lane,
+                           static_cast<int>(planner.speed_changes_mps.size()))
+               : bp_shape(road.lanes);
+  }
+  NetworkShape network(Phase which) const { return phase(which).network(shape(which)); }
+};
+
+// What actor/driving needs to know, and no more.
+struct DrivingSettings {
+  RoadSettings road;
+  EgoSettings ego;
+  PlannerSettings planner;
+  MopRewardSettings mop_reward;
+  BpRewardSettings bp_reward;
+  RulesSettings rules;
+  RandomBpSettings random_bp;
+  double step_s = 1.0;
+};
+
+inline DrivingSettings driving_settings(const RunConfig& config) {
+  return {config.road,      config.ego,   config.planner,   config.mop_reward,
+          config.bp_reward, config.rules, config.random_bp, config.simulation.step_s};
+}
+
+}  // namespace corridor

@@ -1,0 +1,46 @@
+// Named arrays in one file, in the safetensors format (8-byte header length, JSON header, raw
+// little-endian data), which Python reads with `safetensors` or a few lines of NumPy.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace corridor {
+
+using TensorData = std::variant<std::vector<float>, std::vector<double>, std::vector<std::uint64_t>,
+                                std::vector<std::uint8_t>>;
+
+struct Tensor {
+  std::vector<std::size_t> shape;
+  TensorData data;  // row-major; as many values as the shape says
+  bool operator==(const Tensor&) const = default;
+};
+
+// Ordered by name, so that equal content gives equal bytes.
+struct TensorFile {
+  std::map<std::string, Tensor> tensors;
+  std::map<std::string, std::string> metadata;
+
+  // One-dimensional array under `name`.
+  template <typename T>
+  void put(const std::string& name, std::vector<T> values) {
+    const std::size_t size = values.size();
+    tensors.insert_or_assign(name, Tensor{{size}, std::move(values)});
+  }
+  // Throws Failure when missing or of another type; `file` names it in the message.
+  template <typename T>
+  const std::vector<T>& get(const std::string& name, const std::string& file) const;
+
+  bool operator==(const TensorFile&) const = default;
+};
+
+// Atomic (as write_file). Throws Failure on I/O errors.
+void write_tensors(const std::filesystem::path& file, const TensorFile& content);
+// Throws Failure naming the file: missing, truncated, a header that lies about sizes or offsets.
+TensorFile read_tensors(const std::filesystem::path& file);
+
+}  // namespace corridor
