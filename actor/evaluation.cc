@@ -1,0 +1,158 @@
+#include "actor/evaluation.h"
+
+#include <nlohmann/json.hpp>
+
+#include "proto/failure.h"
+
+namespace corridor::actor {
+namespace {
+
+using nlohmann::json;
+
+constexpr double kKphPerMps = 3.6;
+
+std::string hex(std::uint64_t hash) { return fmt::format("{:016x}", hash); }
+
+json summary_json(const EpisodeSummary& summary, std::uint64_t episode) {
+  return {{"episode", episode},
+          {"steps", summary.steps},
+          {"bp_reward", summary.bp_reward},
+          {"mop_reward", summary.mop_reward},
+          {"collisions", summary.collision ? 1 : 0},
+          {"collision_kind", summary.collision
+                                 ? json(driving::collision_kind_name(summary.collision->kind))
+                                 : json(nullptr)},
+          {"lane_changes", summary.lane_changes},
+          {"hard_brakes", summary.hard_brakes},
+          {"distance_m", summary.distance_m},
+          {"lane_steps", summary.lane_steps}};
+}
+
+json totals_json(const RunConfig& config, const EvaluationTask& task, const json& per_episode) {
+  std::int64_t steps = 0, collisions = 0, lane_changes = 0;
+  double bp_reward = 0.0, distance_m = 0.0;
+  json by_kind = json::object();
+  for (int kind = 0; kind < driving::kCollisionKinds; ++kind) {
+    by_kind[driving::collision_kind_name(static_cast<driving::CollisionKind>(kind))] = 0;
+  }
+  for (const json& episode : per_episode) {
+    steps += episode["steps"].get<std::int64_t>();
+    collisions += episode["collisions"].get<std::int64_t>();
+    lane_changes += episode["lane_changes"].get<std::int64_t>();
+    bp_reward += episode["bp_reward"].get<double>();
+    distance_m += episode["distance_m"].get<double>();
+    const json& kind = episode["collision_kind"];
+    if (!kind.is_null()) {
+      json& count = by_kind[kind.get<std::string>()];
+      count = count.get<int>() + 1;
+    }
+  }
+  const double time_s = static_cast<double>(steps) * config.simulation.step_s;
+  return {{"planner", task.pair.name},
+          {"seed", task.seed},
+          {"steps", steps},
+          {"episodes", per_episode.size()},
+          {"bp_reward_per_1000", 1000.0 * bp_reward / static_cast<double>(steps)},
+          {"collisions", collisions},
+          {"collisions_by_kind", by_kind},
+          {"lane_changes", lane_changes},
+          {"mean_speed_kph", kKphPerMps * distance_m / time_s},
+          {"distance_km", distance_m / 1000.0},
+          {"per_episode", per_episode}};
+}
+
+json episode_json(const EvaluationTask& task, std::uint64_t index, std::uint64_t seed,
+                  const Episode& episode) {
+  return {{"planner", task.pair.name},
+          {"evaluation_seed", task.seed},
+          {"episode", index},
+          {"episode_seed", seed},
+          {"driven_by_world", task.pair.world_drives},
+          {"actions", episode.actions()},
+          {"trajectory_hash", hex(episode.trajectory_hash())},
+          {"summary", summary_json(episode.summary(), index)}};
+}
+
+}  // namespace
+
+void evaluate(const RunConfig& config, const TrainedNetworks& networks, const EvaluationTask& task,
+              const RunDirectory& directory, world::World& world,
+              const std::function<bool(std::int64_t)>& progress) {
+  const auto bp = make_behaviour_planner(task.pair, config, networks);
+  const auto mop = make_motion_planner(task.pair, config, networks);
+  const std::string name = fmt::format("{}_{}", task.pair.name, task.seed);
+  std::filesystem::create_directories(directory.episodes());
+  if (!task.fcd_directory.empty()) std::filesystem::create_directories(task.fcd_directory);
+
+  Episode episode(config, world);
+  json per_episode = json::array();
+  std::int64_t steps = 0;
+  for (std::uint64_t index = 0; steps < task.steps; ++index) {
+    world::EpisodeStart start{.seed = test_episode_seed(task.seed, index)};
+    if (!task.fcd_directory.empty()) {
+      start.fcd_output = task.fcd_directory / fmt::format("{}_{}.fcd.xml", name, index);
+    }
+    if (task.pair.world_drives) {
+      start.driver = world::EgoDriver::kWorld;
+      drive_by_world(episode, start, task.steps - steps);
+    } else {
+      drive(episode, start, *bp, *mop, task.steps - steps);
+    }
+    episode.end();
+    steps += episode.summary().steps;
+    per_episode.push_back(summary_json(episode.summary(), index));
+    write_file(directory.episodes() / fmt::format("{}_{}.json", name, index),
+               episode_json(task, index, start.seed, episode).dump());
+    if (!progress(steps)) return;
+  }
+  write_file(directory.evaluation() / (name + ".json"),
+             totals_json(config, task, per_episode).dump(1));
+}
+
+Redriven redrive(const RunConfig& config, const std::filesystem::path& file, world::World& world,
+                 const std::filesystem::path& fcd_output) {
+  const json record = read_json(file);
+  world::EpisodeStart start;
+  start.fcd_output = fcd_output;
+  std::vector<std::uint8_t> actions;
+  int steps = 0;
+  Redriven result;
+  try {
+    start.seed = record.at("episode_seed").get<std::uint64_t>();
+    if (record.at("driven_by_world").get<bool>()) start.driver = world::EgoDriver::kWorld;
+    actions = record.at("actions").get<std::vector<std::uint8_t>>();
+    steps = record.at("summary").at("steps").get<int>();
+    result.recorded_hash =
+        std::stoull(record.at("trajectory_hash").get<std::string>(), nullptr, 16);
+  } catch (const std::exception& error) {
+    throw Failure("{} is no recorded episode: {}", file.string(), error.what());
+  }
+  const bool planned = start.driver == world::EgoDriver::kPlanner;
+  if (planned && actions.size() != static_cast<std::size_t>(steps)) {
+    throw Failure("{} is damaged: {} actions for {} steps", file.string(), actions.size(), steps);
+  }
+  const int mop_actions = config.shape(Phase::kMop).actions;
+  for (const std::uint8_t action : actions) {
+    if (driving::unpack(action).mop_action >= mop_actions) {
+      throw Failure("{} has an action that this run's planner does not have: it is of another run",
+                    file.string());
+    }
+  }
+
+  Episode episode(config, world);
+  episode.begin(start);
+  for (int i = 0; i < steps; ++i) {
+    if (planned) {
+      const auto action = driving::unpack(actions[static_cast<std::size_t>(i)]);
+      if (episode.step(action.command, action.mop_action).episode_ended) break;
+    } else if (episode.step_by_world().episode_ended) {
+      break;
+    }
+  }
+  episode.end();
+  result.hash = episode.trajectory_hash();
+  result.summary = episode.summary();
+  return result;
+}
+
+}  // namespace corridor::actor

@@ -1,0 +1,96 @@
+// corridor-actor: one car in one SUMO. In a training run it explores; by itself it evaluates, or
+// drives a recorded episode again.
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <string>
+
+#include "actor/evaluation.h"
+#include "actor/training.h"
+#include "actor/world/sumo_world.h"
+#include "proto/failure.h"
+#include "proto/program.h"
+#include "proto/run_config.h"
+#include "proto/run_directory.h"
+#include "proto/tensor_file.h"
+
+namespace {
+
+using namespace corridor;
+
+struct Arguments {
+  std::string run;
+  int index = -1;
+  std::string planners;
+  std::uint64_t seed = 0;
+  std::int64_t steps = 0;
+  std::string fcd;
+  std::string episode;
+};
+
+actor::TrainedNetworks trained_networks(const RunDirectory& directory) {
+  const auto checkpoint = directory.newest_checkpoint();
+  if (!checkpoint) {
+    throw Failure("{} has no checkpoint yet: train on, or evaluate another run",
+                  directory.root().string());
+  }
+  const std::string file = *checkpoint / "learner.safetensors";
+  const TensorFile tensors = read_tensors(file);
+  return {tensors.get<float>("mop", file), tensors.get<float>("bp", file)};
+}
+
+int evaluate(const Arguments& arguments, const RunConfig& config, const RunDirectory& directory,
+             world::World& world) {
+  const actor::EvaluationTask task{actor::planner_pair(arguments.planners), arguments.seed,
+                                   arguments.steps, arguments.fcd};
+  actor::evaluate(config, trained_networks(directory), task, directory, world,
+                  [&](std::int64_t steps) {
+                    std::printf("%lld/%lld\n", static_cast<long long>(steps),
+                                static_cast<long long>(task.steps));
+                    std::fflush(stdout);
+                    return !stop_requested();
+                  });
+  return stop_requested() ? 1 : 0;
+}
+
+int redrive(const Arguments& arguments, const RunConfig& config, world::World& world) {
+  const actor::Redriven result = actor::redrive(config, arguments.episode, world, arguments.fcd);
+  const auto& summary = result.summary;
+  std::printf(
+      "%d steps, BP reward %.1f, %d lane changes, %s, trajectory %016llx: %s\n", summary.steps,
+      summary.bp_reward, summary.lane_changes,
+      summary.collision ? driving::collision_kind_name(summary.collision->kind) : "no collision",
+      static_cast<unsigned long long>(result.hash),
+      result.hash == result.recorded_hash ? "as recorded" : "NOT as recorded");
+  return result.hash == result.recorded_hash ? 0 : 1;
+}
+
+int run(const Arguments& arguments) {
+  const RunDirectory directory = RunDirectory::open(arguments.run);
+  const RunConfig config = load_run_config(directory.config());
+  world::SumoWorld world(world::world_settings(config), directory.network(), directory.routes());
+  if (!arguments.episode.empty()) return redrive(arguments, config, world);
+  if (!arguments.planners.empty()) return evaluate(arguments, config, directory, world);
+  if (arguments.index < 0 || arguments.index >= config.run.actors) {
+    throw Failure("--index {} is none of the run's {} actors", arguments.index, config.run.actors);
+  }
+  actor::train(config, directory, arguments.index, world);
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Arguments arguments;
+  CLI::App app("One car in one SUMO: an actor of a training run, or an evaluation by itself");
+  app.set_version_flag("--version", std::string("corridor-actor ") + kVersion);
+  app.add_option("RUN", arguments.run, "run directory")->required();
+  app.add_option("--index", arguments.index, "train: as which actor, from 0");
+  app.add_option("--evaluate", arguments.planners, "evaluate this planner pair");
+  app.add_option("--seed", arguments.seed, "evaluate: seed of the traffic");
+  app.add_option("--steps", arguments.steps, "evaluate: steps to drive");
+  app.add_option("--fcd", arguments.fcd,
+                 "SUMO writes its trajectories here (evaluate: a directory; redrive: a file)");
+  app.add_option("--redrive", arguments.episode, "drive this recorded episode again");
+  CLI11_PARSE(app, argc, argv);
+  return run_program("corridor-actor", true, [&] { return run(arguments); });
+}

@@ -1,0 +1,134 @@
+#include "cluster/commands.h"
+
+#include <CLI/CLI.hpp>
+
+#include "cluster/check.h"
+#include "cluster/checkpoint.h"
+#include "cluster/evaluation.h"
+#include "cluster/plan.h"
+#include "cluster/training.h"
+#include "proto/failure.h"
+#include "proto/program.h"
+
+namespace corridor::cluster {
+namespace {
+
+// What the command line says; each command reads its part.
+struct Arguments {
+  std::string program;
+  TrainOptions train;
+  EvaluateOptions evaluate;
+  std::filesystem::path run;
+  std::filesystem::path scenario;
+  std::string episode;
+};
+
+void declare_train(CLI::App& app, Arguments& arguments) {
+  TrainOptions& options = arguments.train;
+  app.add_option("SCENARIO", options.scenario, "scenario file (TOML)")->required();
+  app.add_option("--run", options.run, "run directory to create")->required();
+  app.add_option("--actors", options.actors, "actor processes (run.actors)")->take_last();
+  app.add_option("--seed", options.seed, "seed of everything random (run.seed)")->take_last();
+  app.add_option("--set", options.settings, "table.key=value: overrides the scenario; repeatable")
+      ->allow_extra_args(false);
+}
+
+void declare_run(CLI::App& app, std::filesystem::path& run) {
+  app.add_option("DIR", run, "run directory")->required();
+}
+
+void declare_evaluate(CLI::App& app, Arguments& arguments) {
+  EvaluateOptions& options = arguments.evaluate;
+  declare_run(app, options.run);
+  std::string planners = "planner pairs, separated by commas; all unless given:";
+  for (const PlannerPair& pair : planner_pairs()) {
+    planners += fmt::format("\n{} ({})", pair.name, pair.meaning);
+  }
+  app.add_option("--planners", options.planners, planners)->delimiter(',')->allow_extra_args(false);
+  app.add_option("--steps", options.steps, "steps for each planner and seed (evaluation.steps)");
+  app.add_option("--seeds", options.seeds, "evaluation seeds (evaluation.seeds)")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  app.add_option("--jobs", options.jobs, "processes at a time (the number of cores)");
+  app.add_option("--json", options.json, "write the figures of each planner and seed to this file");
+  app.add_option("--fcd", options.fcd,
+                 "have SUMO write the trajectories of every episode into this directory");
+}
+
+int run_fingerprint(const Arguments& arguments) {
+  const auto checkpoint = newest_checkpoint(RunDirectory::open(arguments.run));
+  if (!checkpoint) throw Failure("{} has no checkpoint yet", arguments.run.string());
+  fmt::print("{}\n", fingerprint(*checkpoint));
+  return 0;
+}
+
+struct Command {
+  const char* name;
+  const char* summary;
+  const char* examples;
+  void (*declare)(CLI::App&, Arguments&);
+  int (*run)(const Arguments&);
+};
+
+const Command kCommands[] = {
+    {"train", "Train the MoP, then the BP, with several actors",
+     "corridor train scenarios/smoke.toml --run runs/first\n"
+     "  corridor train scenarios/paper.toml --run runs/paper --actors 4 --seed 2\n"
+     "  corridor train scenarios/paper.toml --run runs/calm --set traffic.blind_rate_per_s=0",
+     declare_train, [](const Arguments& a) { return train(a.train, a.program); }},
+    {"resume", "Go on with a training from its newest checkpoint", "corridor resume runs/first",
+     [](CLI::App& app, Arguments& a) { declare_run(app, a.run); },
+     [](const Arguments& a) { return resume(a.run, a.program); }},
+    {"evaluate", "Drive planners greedily on held-out traffic and print the paper's table",
+     "corridor evaluate runs/first\n"
+     "  corridor evaluate runs/first --planners hierarchical,sumo --seeds 1001,1002 --json "
+     "out.json",
+     declare_evaluate, [](const Arguments& a) { return evaluate(a.evaluate); }},
+    {"fingerprint", "Print a hash over everything in the newest checkpoint",
+     "corridor fingerprint runs/first",
+     [](CLI::App& app, Arguments& a) { declare_run(app, a.run); }, run_fingerprint},
+    {"redrive", "Drive a recorded episode again and compare the trajectories",
+     "corridor redrive runs/first hierarchical_1001_3",
+     [](CLI::App& app, Arguments& a) {
+       declare_run(app, a.run);
+       app.add_option("EPISODE", a.episode, "file, or name as in DIR/evaluation/episodes")
+           ->required();
+     },
+     [](const Arguments& a) -> int { redrive(a.run, a.episode); }},
+    {"check", "Say whether a scenario is right, and what it comes to",
+     "corridor check scenarios/paper.toml",
+     [](CLI::App& app, Arguments& a) {
+       app.add_option("FILE", a.scenario, "scenario file (TOML)")->required();
+     },
+     [](const Arguments& a) { return check(a.scenario); }},
+};
+
+}  // namespace
+
+int run_command(int argc, const char* const* argv) {
+  CLI::App app("Trains and evaluates hierarchical planners for multi-lane cruising in SUMO traffic",
+               "corridor");
+  app.set_version_flag("--version", kVersion, "print the version");
+  app.require_subcommand(1);
+  app.footer("`corridor COMMAND --help` tells more, with examples.");
+  Arguments arguments;
+  arguments.program = argv[0];
+  for (const Command& command : kCommands) {
+    CLI::App* declared = app.add_subcommand(command.name, command.summary);
+    declared->set_version_flag("--version", kVersion, "print the version");
+    declared->footer(fmt::format("Examples:\n  {}", command.examples));
+    command.declare(*declared, arguments);
+  }
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
+    throw Failure("{}; see {} --help", error.what(), arguments.program);
+  }
+  for (const Command& command : kCommands) {
+    if (app.got_subcommand(command.name)) return command.run(arguments);
+  }
+  CORRIDOR_CHECK(false, "a command is required and none was parsed");
+}
+
+}  // namespace corridor::cluster

@@ -1,0 +1,9 @@
+// The user's command: starts, watches and stops the other programs, which lie beside it.
+
+#include "cluster/commands.h"
+#include "proto/program.h"
+
+int main(int argc, char** argv) {
+  return corridor::run_program("corridor", /*dies_with_parent=*/false,
+                               [&] { return corridor::cluster::run_command(argc, argv); });
+}

@@ -1,0 +1,72 @@
+#include "cluster/plan.h"
+
+#include "proto/failure.h"
+
+namespace corridor::cluster {
+
+std::string actor_name(int index) { return fmt::format("actor-{}", index); }
+
+std::vector<ProcessPlan> training_plan(const RunSettings& settings, const RunDirectory& directory,
+                                       const std::filesystem::path& programs) {
+  const std::string run = directory.root().string();
+  const auto process = [&](const std::string& name, const char* program,
+                           std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), {(programs / program).string(), run});
+    return ProcessPlan{name, std::move(arguments), directory.log(name)};
+  };
+  std::vector<ProcessPlan> plan = {process("replay", "corridor-replay", {}),
+                                   process(kLearner, "corridor-learner", {})};
+  for (int i = 0; i < settings.actors; ++i) {
+    plan.push_back(process(actor_name(i), "corridor-actor", {"--index", std::to_string(i)}));
+  }
+  return plan;
+}
+
+const std::vector<PlannerPair>& planner_pairs() {
+  static const std::vector<PlannerPair> pairs = {
+      {"hierarchical", "learned BP over learned MoP", true, true},
+      {"rules", "rule-based BP and MoP", false, false},
+      {"rules+mop", "rule-based BP over learned MoP", true, false},
+      {"bp+rules", "learned BP over rule-based MoP", false, true},
+      {"sumo", "SUMO drives the ego", false, false},
+  };
+  return pairs;
+}
+
+const PlannerPair& planner_pair(std::string_view name) {
+  std::string known;
+  for (const PlannerPair& pair : planner_pairs()) {
+    if (pair.name == name) return pair;
+    known += fmt::format("{}{}", known.empty() ? "" : ", ", pair.name);
+  }
+  throw Failure("there is no planner '{}'; choose among {}", name, known);
+}
+
+std::vector<EvaluationJob> evaluation_jobs(const std::vector<std::string>& planners,
+                                           const std::vector<std::uint64_t>& seeds,
+                                           std::int64_t steps) {
+  std::vector<EvaluationJob> jobs;
+  for (const std::string& planner : planners) {
+    for (const std::uint64_t seed : seeds) jobs.push_back({planner, seed, steps});
+  }
+  return jobs;
+}
+
+ProcessPlan evaluation_process(const EvaluationJob& job, const RunDirectory& directory,
+                               const std::filesystem::path& programs,
+                               const std::filesystem::path& fcd) {
+  const std::string name = fmt::format("evaluate-{}-{}", job.planner, job.seed);
+  ProcessPlan plan{
+      name,
+      {(programs / "corridor-actor").string(), directory.root().string(), "--evaluate", job.planner,
+       "--seed", std::to_string(job.seed), "--steps", std::to_string(job.steps)},
+      directory.log(name)};
+  if (!fcd.empty()) plan.argv.insert(plan.argv.end(), {"--fcd", fcd.string()});
+  return plan;
+}
+
+std::filesystem::path evaluation_file(const EvaluationJob& job, const RunDirectory& directory) {
+  return directory.evaluation() / fmt::format("{}_{}.json", job.planner, job.seed);
+}
+
+}  // namespace corridor::cluster

@@ -1,0 +1,250 @@
+#include "cluster/progress.h"
+
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <charconv>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "cluster/text.h"
+#include "proto/failure.h"
+
+namespace corridor::cluster {
+namespace {
+
+constexpr double kRateWindow_s = 30.0;
+// An actor writes a line for about 4000 steps of all actors.
+constexpr std::size_t kRecentLines = 20;
+constexpr double kPlainInterval_s = 10.0;
+// From this share of its time on, waiting is worth naming.
+constexpr double kWaitsMuch = 0.1;
+
+std::string percent(double share) { return fmt::format("{:.0f} %", 100.0 * share); }
+
+int terminal_columns() {
+  winsize size{};
+  return ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
+}
+
+}  // namespace
+
+double monotonic_s() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+std::string progress_bar(double done, int width) {
+  const int filled = static_cast<int>(std::clamp(done, 0.0, 1.0) * width);
+  return fmt::format("[{}{}]", std::string(static_cast<std::size_t>(filled), '#'),
+                     std::string(static_cast<std::size_t>(width - filled), '.'));
+}
+
+std::optional<MetricsLine> parse_metrics_line(std::string_view text) {
+  const nlohmann::json json = nlohmann::json::parse(text, nullptr, /*allow_exceptions=*/false);
+  if (!json.is_object()) return std::nullopt;
+  const auto phase = json.find("phase"), round = json.find("round"), step = json.find("step");
+  if (phase == json.end() || !phase->is_string() || round == json.end() ||
+      !round->is_number_unsigned() || step == json.end() || !step->is_number_integer()) {
+    return std::nullopt;
+  }
+  MetricsLine line{
+      phase->get<std::string>(), round->get<std::uint64_t>(), step->get<std::int64_t>(), {}};
+  for (const auto& [name, value] : json.items()) {
+    // What was not finite is null.
+    if (value.is_number() && name != "round" && name != "step") line.values[name] = value;
+  }
+  return line;
+}
+
+std::optional<MetricsLine> last_metrics_line(const std::filesystem::path& file) {
+  // Longer than any two lines, so that it holds a whole one.
+  constexpr std::streamoff kTailBytes = 64 * 1024;
+  std::ifstream in(file, std::ios::binary | std::ios::ate);
+  if (!in) return std::nullopt;
+  in.seekg(std::max<std::streamoff>(0, in.tellg() - kTailBytes));
+  std::optional<MetricsLine> last;
+  for (std::string text; std::getline(in, text);) {
+    if (auto line = parse_metrics_line(text)) last = std::move(line);
+  }
+  return last;
+}
+
+std::optional<std::int64_t> parse_step_count(std::string_view text) {
+  std::int64_t steps = 0, total = 0;
+  const char* const end = text.data() + text.size();
+  const auto [slash, error] = std::from_chars(text.data(), end, steps);
+  if (error != std::errc() || slash == end || *slash != '/') return std::nullopt;
+  const auto [rest, total_error] = std::from_chars(slash + 1, end, total);
+  if (total_error != std::errc() || rest != end) return std::nullopt;
+  return steps;
+}
+
+LineTail::LineTail(std::filesystem::path file) : file_(std::move(file)) {
+  std::error_code missing;
+  const std::uintmax_t size = std::filesystem::file_size(file_, missing);
+  if (!missing) offset_ = size;
+}
+
+std::vector<std::string> LineTail::read() {
+  constexpr std::size_t kChunkBytes = 4 * 1024 * 1024;
+  std::ifstream in(file_, std::ios::binary | std::ios::ate);
+  if (!in) return {};
+  const auto size = static_cast<std::uintmax_t>(in.tellg());
+  if (size < offset_) offset_ = 0;  // it was written anew
+  std::string content(std::min<std::uintmax_t>(size - offset_, kChunkBytes), '\0');
+  in.seekg(static_cast<std::streamoff>(offset_));
+  in.read(content.data(), static_cast<std::streamsize>(content.size()));
+  content.resize(static_cast<std::size_t>(in.gcount()));
+
+  std::vector<std::string> lines;
+  std::size_t start = 0;
+  for (std::size_t end; (end = content.find('\n', start)) != std::string::npos; start = end + 1) {
+    lines.push_back(content.substr(start, end - start));
+  }
+  // A chunk without an end of line is no text of ours: skipped, or it would never end.
+  offset_ += start == 0 && content.size() == kChunkBytes ? content.size() : start;
+  return lines;
+}
+
+void TrainingProgress::Recent::add(double value) {
+  values.push_back(value);
+  if (values.size() > kRecentLines) values.pop_front();
+}
+
+std::optional<double> TrainingProgress::Recent::mean() const {
+  if (values.empty()) return std::nullopt;
+  double sum = 0.0;
+  for (const double value : values) sum += value;
+  return sum / static_cast<double>(values.size());
+}
+
+TrainingProgress::TrainingProgress(const Schedule& schedule, std::uint64_t rounds_done,
+                                   double now_s)
+    : schedule_(schedule),
+      phase_(phase_name(schedule.phase_of(std::min(rounds_done, schedule.rounds() - 1)))),
+      steps_done_(static_cast<std::int64_t>(rounds_done) * schedule.steps_per_round()) {
+  history_.emplace_back(now_s, steps_done_);
+}
+
+std::int64_t TrainingProgress::steps_total() const {
+  return static_cast<std::int64_t>(schedule_.rounds()) * schedule_.steps_per_round();
+}
+
+void TrainingProgress::enter(const std::string& phase) {
+  if (phase == phase_) return;
+  phase_ = phase;
+  recent_.clear();
+}
+
+void TrainingProgress::note(const char* process, const MetricsLine& line) {
+  for (const auto& [name, value] : line.values) {
+    recent_[fmt::format("{} {}", process, name)].add(value);
+  }
+}
+
+void TrainingProgress::on_learner(const MetricsLine& line, double now_s) {
+  enter(line.phase);
+  note("learner", line);
+  if (line.round >= schedule_.rounds()) return;  // of another configuration
+  steps_done_ = static_cast<std::int64_t>(line.round + 1) * schedule_.steps_per_round();
+  history_.emplace_back(now_s, steps_done_);
+  while (history_.size() > 2 && history_[1].first < now_s - kRateWindow_s) history_.pop_front();
+}
+
+void TrainingProgress::on_actor(const MetricsLine& line) {
+  // Actors are a round ahead of the learner at most: it says which phase it is.
+  if (line.phase == phase_) note("actor", line);
+}
+
+std::optional<double> TrainingProgress::mean(const std::string& process, const char* name) const {
+  const auto found = recent_.find(fmt::format("{} {}", process, name));
+  return found == recent_.end() ? std::nullopt : found->second.mean();
+}
+
+double TrainingProgress::steps_per_s() const {
+  const double passed_s = history_.back().first - history_.front().first;
+  const auto steps = static_cast<double>(history_.back().second - history_.front().second);
+  return passed_s > 0.0 ? steps / passed_s : 0.0;
+}
+
+std::string TrainingProgress::headline() const {
+  const double share = static_cast<double>(steps_done_) / static_cast<double>(steps_total());
+  const double rate = steps_per_s();
+  std::string text =
+      fmt::format("{:<4}{} {:5.1f} %  {} of {} steps", phase_, progress_bar(share, 20),
+                  100.0 * share, grouped(steps_done_), grouped(steps_total()));
+  if (rate > 0.0) {
+    text += fmt::format("  {} steps/s  {} left", grouped(std::llround(rate)),
+                        duration_text(static_cast<double>(steps_total() - steps_done_) / rate));
+  }
+  return text;
+}
+
+std::string TrainingProgress::details() const {
+  std::string text;
+  const auto append = [&](const std::string& part) { text += (text.empty() ? "" : "; ") + part; };
+  if (const auto reward = mean("actor", "charts/reward_per_1000")) {
+    append(fmt::format("reward {:.0f}, collisions {:.1f} per 1000 steps", *reward,
+                       mean("actor", "charts/collisions_per_1000").value_or(0.0)));
+  }
+  if (const auto ratio = mean("learner", "replay/samples_per_insert")) {
+    append(fmt::format("{:.1f} samples per insert", *ratio));
+  }
+  if (const std::string waits = waiting(); !waits.empty()) append(waits);
+  return text.empty() ? "starting" : text;
+}
+
+// Who waits for whom, and so who is the bottleneck.
+std::string TrainingProgress::waiting() const {
+  const auto for_actors = mean("learner", "time/wait_for_actors");
+  const auto for_weights = mean("actor", "time/wait_for_weights");
+  if (!for_actors || !for_weights) return "";
+  const double learner_for_replay = mean("learner", "time/wait_for_replay").value_or(0.0);
+  const double actors_for_replay = mean("actor", "time/wait_for_replay").value_or(0.0);
+  const double for_replay = std::max(learner_for_replay, actors_for_replay);
+
+  const double most = std::max({*for_actors, *for_weights, for_replay});
+  const char* verdict = "balanced";
+  if (most >= kWaitsMuch) {
+    verdict = most == for_replay     ? "the replay server is the bottleneck"
+              : most == *for_weights ? "the learner is the bottleneck"
+                                     : "the actors are the bottleneck";
+  }
+  std::string text = fmt::format("learner waits {} for actors; actors wait {} for weights",
+                                 percent(*for_actors), percent(*for_weights));
+  if (for_replay >= kWaitsMuch) {
+    text += fmt::format("; for replay the learner waits {}, actors {}", percent(learner_for_replay),
+                        percent(actors_for_replay));
+  }
+  return text + ": " + verdict;
+}
+
+ProgressDisplay::ProgressDisplay() : terminal_(isatty(STDOUT_FILENO) == 1) {}
+
+ProgressDisplay::~ProgressDisplay() { std::fflush(stdout); }
+
+bool ProgressDisplay::due(double now_s) const {
+  return terminal_ || !last_s_ || now_s - *last_s_ >= kPlainInterval_s;
+}
+
+void ProgressDisplay::show(const std::vector<std::string>& lines, double now_s) {
+  if (!due(now_s)) return;
+  last_s_ = now_s;
+  if (terminal_) {
+    // Back to the first of the lines that stand there; each is then cleared and written. A line
+    // that wrapped could not be counted, so none may.
+    if (shown_ > 0) fmt::print("\x1b[{}F", shown_);
+    const auto columns = static_cast<std::size_t>(terminal_columns() - 1);
+    for (const std::string& line : lines) fmt::print("\x1b[2K{}\n", line.substr(0, columns));
+    shown_ = lines.size();
+  } else {
+    for (const std::string& line : lines) fmt::print("{}\n", line);
+  }
+  std::fflush(stdout);
+}
+
+}  // namespace corridor::cluster

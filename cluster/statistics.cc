@@ -1,0 +1,77 @@
+#include "cluster/statistics.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "proto/failure.h"
+#include "proto/random.h"
+
+namespace corridor::cluster {
+namespace {
+
+// P(X <= count) for X of mean `mean`. Each term comes from its logarithm: a recurrence from either
+// end of the sum would start from an underflow when mean and count are far apart.
+double poisson_cdf(std::int64_t count, double mean) {
+  if (mean <= 0.0) return 1.0;
+  double sum = 0.0;
+  for (std::int64_t k = 0; k <= count; ++k) {
+    const auto x = static_cast<double>(k);
+    sum += std::exp(x * std::log(mean) - mean - std::lgamma(x + 1.0));
+  }
+  return sum;
+}
+
+// The mean in [low, high] for which P(X <= count) = probability; it falls as the mean grows.
+double mean_with_cdf(std::int64_t count, double probability, double low, double high) {
+  for (int i = 0; i < 100; ++i) {
+    const double middle = 0.5 * (low + high);
+    (poisson_cdf(count, middle) > probability ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
+// Linear interpolation between order statistics (Hyndman and Fan's type 7).
+double quantile(const std::vector<double>& sorted, double probability) {
+  const double position = probability * static_cast<double>(sorted.size() - 1);
+  const auto below = static_cast<std::size_t>(position);
+  const std::size_t above = std::min(below + 1, sorted.size() - 1);
+  return std::lerp(sorted[below], sorted[above], position - static_cast<double>(below));
+}
+
+}  // namespace
+
+Interval poisson_interval(std::int64_t count, double confidence) {
+  CORRIDOR_CHECK(count >= 0 && confidence > 0.0 && confidence < 1.0, "{} {}", count, confidence);
+  const double tail = 0.5 * (1.0 - confidence);
+  const auto seen = static_cast<double>(count);
+  // Beyond every upper end of confidence levels in use (ten deviations and a constant).
+  const double largest = seen + 10.0 * std::sqrt(seen) + 50.0;
+  return {count == 0 ? 0.0 : mean_with_cdf(count - 1, 1.0 - tail, 0.0, seen),
+          mean_with_cdf(count, tail, seen, largest)};
+}
+
+Interval bootstrap_ratio_interval(std::span<const double> numerators,
+                                  std::span<const double> denominators, std::uint64_t seed,
+                                  int resamples, double confidence) {
+  CORRIDOR_CHECK(!numerators.empty() && numerators.size() == denominators.size() && resamples > 0,
+                 "{} numerators, {} denominators", numerators.size(), denominators.size());
+  std::vector<double> ratios(static_cast<std::size_t>(resamples));
+  std::uint64_t draw = 0;
+  for (double& ratio : ratios) {
+    double numerator = 0.0;
+    double denominator = 0.0;
+    for (std::size_t unit = 0; unit < numerators.size(); ++unit) {
+      const std::uint64_t drawn =
+          random_below(numerators.size(), seed, Purpose::kBootstrap, {draw++});
+      numerator += numerators[drawn];
+      denominator += denominators[drawn];
+    }
+    ratio = numerator / denominator;
+  }
+  std::sort(ratios.begin(), ratios.end());
+  const double tail = 0.5 * (1.0 - confidence);
+  return {quantile(ratios, tail), quantile(ratios, 1.0 - tail)};
+}
+
+}  // namespace corridor::cluster

@@ -49,7 +49,7 @@ class RunDirectory {
 
   // Checkpoints. A new one is filled under a temporary name and becomes valid by `commit`.
   std::filesystem::path begin_checkpoint(std::uint64_t round) const;  // an empty directory
-  // Writes manifest.json (round, phase, size and XXH3 of each file), renames the directory into
+  // Writes manifest.json (round, size and XXH3 of each file), renames the directory into
   // place, points CURRENT at it, and removes all but the newest `kept`.
   void commit_checkpoint(std::uint64_t round, int kept) const;
   // The checkpoint that CURRENT names, its files' sizes and hashes checked; nothing when there is

@@ -144,6 +144,18 @@ struct DqnSettings {
   }
 };
 
+// Where [bp] differs by default: it trains less, and looks further ahead.
+inline DqnSettings bp_defaults() {
+  DqnSettings settings;
+  settings.steps = 400'000;
+  settings.gamma = 0.98;
+  settings.n_step = 5;
+  settings.reward_scale = 0.1;
+  settings.epsilon_steps = 60'000;
+  settings.exploration_hold_max = 10;
+  return settings;
+}
+
 // [schedule] Rounds, evaluation during training, checkpoints (docs/architecture.md, "Lockstep").
 struct ScheduleSettings {
   int steps_per_round = 256;            // of each actor: one chunk
@@ -184,7 +196,7 @@ struct RunConfig {
   BpRewardSettings bp_reward;
   RulesSettings rules;
   RandomBpSettings random_bp;
-  std::array<DqnSettings, kPhases> dqn;  // [mop], [bp]
+  std::array<DqnSettings, kPhases> dqn = {DqnSettings{}, bp_defaults()};  // [mop], [bp]
   ScheduleSettings schedule;
   EvaluationSettings evaluation;
   RunSettings run;

@@ -1,0 +1,187 @@
+#include "replay/replay_service.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "proto/failure.h"
+#include "proto/tensor_file.h"
+
+namespace corridor::replay {
+namespace {
+
+constexpr const char* kFile = "replay.safetensors";
+constexpr std::size_t kBatchBytesMax = 64 * 1024 * 1024;  // what proto/codec.h carries
+
+template <typename... Args>
+Refused refused(fmt::format_string<Args...> format, Args&&... args) {
+  return {fmt::format(format, std::forward<Args>(args)...)};
+}
+
+bool are_finite(const std::vector<float>& values) {
+  return std::all_of(values.begin(), values.end(),
+                     [](float value) { return std::isfinite(value); });
+}
+
+}  // namespace
+
+ReplayService::ReplayService(const RunConfig& config)
+    : config_(config),
+      schedule_(config),
+      admission_(static_cast<std::size_t>(config.run.actors)),
+      store_(config.phase(phase_), layout(phase_), config.run.seed, phase_, 0),
+      limiter_(config.phase(phase_)) {}
+
+void ReplayService::begin(Phase phase, std::uint64_t first_key) {
+  phase_ = phase;
+  store_ = Store(config_.phase(phase), layout(phase), config_.run.seed, phase, first_key);
+  limiter_ = Limiter(config_.phase(phase));
+}
+
+Outcome ReplayService::handle(ClientId client, ReplayRequest request) {
+  const std::size_t known = client.role == Role::kActor ? admission_.actors() : 1;
+  if (client.index >= known) {
+    return refused("index {} of a run with {} {}", client.index, known,
+                   client.role == Role::kActor ? "actors (run.actors)" : "learner");
+  }
+  const bool of_actors = std::holds_alternative<Insert>(request);
+  if (!std::holds_alternative<Join>(request) && of_actors != (client.role == Role::kActor)) {
+    return refused("{} sends no such request", of_actors ? "a learner" : "an actor");
+  }
+  return std::visit([&](auto& kind) { return answer(client, std::move(kind)); }, request);
+}
+
+Outcome ReplayService::answer(ClientId client, const Join&) {
+  if (client.role == Role::kLearner) return Joined{next_round(), {}};
+  Joined joined{admission_.next_round(client.index), {}};
+  // An actor's episodes are counted in a phase: none is carried over into the next one.
+  const std::uint64_t bp = schedule_.first_round(Phase::kBp);
+  if (joined.next_round != bp) joined.open = admission_.open_episode(client.index);
+  return joined;
+}
+
+Outcome ReplayService::answer(ClientId client, Insert&& chunk) {
+  const std::uint64_t round = chunk.round;
+  if (round >= schedule_.rounds()) {
+    return refused("a chunk of round {} in a run of {} rounds", round, schedule_.rounds());
+  }
+  const RowLayout rows = layout(schedule_.phase_of(round));
+  if (static_cast<int>(chunk.observations) != rows.observations ||
+      chunk.rows.size() != chunk.priorities.size() * rows.stride()) {
+    return refused("{} floats for {} rows of {} observations; round {} has rows of {} observations",
+                   chunk.rows.size(), chunk.priorities.size(), chunk.observations, round,
+                   rows.observations);
+  }
+  if (!are_finite(chunk.rows)) return refused("rows of round {} hold NaN or infinity", round);
+  if (!are_priorities(chunk.priorities)) {
+    return refused("priorities of round {} are not all finite and >= 0", round);
+  }
+  switch (admission_.park(client.index, std::move(chunk))) {
+    case Admission::Parking::kParked:
+      return Inserted{};
+    case Admission::Parking::kOutOfTurn:
+      return refused("a chunk of round {} from actor {}, whose next is round {}", round,
+                     client.index, admission_.next_round(client.index));
+    case Admission::Parking::kTooEarly:
+      break;
+  }
+  return refused("a chunk of round {} from actor {} before round {} is complete", round,
+                 client.index, next_round());
+}
+
+Outcome ReplayService::answer(ClientId, const OpenBlock& request) {
+  if (request.round != next_round() || request.round >= schedule_.rounds()) {
+    return refused("block {} wanted, the next is block {} of {}; resume from the last checkpoint",
+                   request.round, next_round(), schedule_.rounds());
+  }
+  open_ = false;
+  waits_ = true;
+  return Waiting{};
+}
+
+std::optional<Opened> ReplayService::try_open() {
+  if (!waits_ || !admission_.missing().empty()) return std::nullopt;
+  const Phase phase = schedule_.phase_of(next_round());
+  if (phase != phase_) begin(phase, store_.next_key());
+
+  const std::uint64_t granted = limiter_.batches(store_.inserted());
+  for (const Insert& chunk : admission_.admit()) store_.insert(chunk.rows, chunk.priorities);
+  const std::uint64_t batches = limiter_.batches(store_.inserted()) - granted;
+  CORRIDOR_CHECK(batches <= UINT32_MAX, "{} batches", batches);
+  waits_ = false;
+  open_ = true;
+  return Opened{store_.size(), store_.inserted(), store_.sampled(),
+                static_cast<std::uint32_t>(batches), store_.stale_priorities()};
+}
+
+Outcome ReplayService::answer(ClientId, const Step& request) {
+  if (!open_) return refused("a step outside an open block");
+  if (request.keys.size() != request.priorities.size()) {
+    return refused("{} keys, {} priorities", request.keys.size(), request.priorities.size());
+  }
+  for (const std::uint64_t key : request.keys) {
+    if (key >= store_.next_key()) {
+      return refused("a priority for key {}, the next is {}", key, store_.next_key());
+    }
+  }
+  if (!are_priorities(request.priorities)) return refused("priorities not all finite and >= 0");
+  if (!std::isfinite(request.importance_exponent) || request.importance_exponent < 0.0) {
+    return refused("an importance exponent of {}", request.importance_exponent);
+  }
+  if (request.count > store_.size()) {
+    return refused("{} rows wanted of {} held", request.count, store_.size());
+  }
+  if (request.count * store_.layout().stride() * sizeof(float) > kBatchBytesMax) {
+    return refused("{} rows wanted, more than a message holds", request.count);
+  }
+  store_.update(request.keys, request.priorities);
+  return store_.sample(request.count, request.importance_exponent);
+}
+
+Outcome ReplayService::answer(ClientId, const Save& request) {
+  if (waits_) return refused("a checkpoint wanted while block {} is to open", next_round());
+  try {
+    save(request.directory);
+  } catch (const Failure& failure) {
+    return Refused{failure.what()};
+  }
+  open_ = false;
+  return Saved{};
+}
+
+std::vector<std::uint32_t> ReplayService::awaited() const {
+  return waits_ ? admission_.missing() : std::vector<std::uint32_t>{};
+}
+
+std::vector<std::pair<std::string, double>> ReplayService::metrics() const {
+  const auto value = [](std::uint64_t count) { return static_cast<double>(count); };
+  const std::uint64_t counted = limiter_.counted_rows(store_.inserted());
+  return {
+      {"replay/size", value(store_.size())},
+      {"replay/inserted", value(store_.inserted())},
+      {"replay/sampled", value(store_.sampled())},
+      {"replay/samples_per_insert", counted == 0 ? 0.0 : value(store_.sampled()) / value(counted)},
+      {"replay/stale_priorities", value(store_.stale_priorities())}};
+}
+
+void ReplayService::save(const std::filesystem::path& directory) const {
+  TensorFile file;
+  admission_.save(file);
+  store_.save(file);
+  write_tensors(directory / kFile, file);
+}
+
+void ReplayService::load(const std::filesystem::path& directory) {
+  const std::string name = (directory / kFile).string();
+  const TensorFile file = read_tensors(name);
+  admission_.load(file, name);
+  if (next_round() > schedule_.rounds()) {
+    throw Failure("{}: {} rounds in a run of {}; use the run's own checkpoint", name, next_round(),
+                  schedule_.rounds());
+  }
+  begin(next_round() == 0 ? Phase::kMop : schedule_.phase_of(next_round() - 1), 0);
+  store_.load(file, name);
+  waits_ = false;
+  open_ = false;
+}
+
+}  // namespace corridor::replay

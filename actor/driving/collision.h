@@ -27,7 +27,8 @@ struct Collision {
 // The first (lowest id) vehicle that overlaps the ego in `after`, if any. Where the two already
 // overlapped across the road one step earlier (`before`), it is a rear collision, by whoever is
 // behind; otherwise a side collision, by whoever moved further towards the other across the road
-// in this step. A vehicle that is not in `before` is judged by its present lateral speed.
+// in this step (the ego, if both moved equally far). A vehicle that is not in `before` is judged by
+// the two present lateral speeds: a rear collision when neither moves towards the other.
 std::optional<Collision> find_collision(const Scene& before, const Scene& after,
                                         const EgoSettings& ego);
 

@@ -8,7 +8,8 @@
 
 namespace corridor::driving {
 
-// Where corridors and lanes lie. Cheap to make; every position is clamped to the road.
+// Where corridors and lanes lie. Cheap to make; every position is clamped to the road, and one on
+// the line between two lanes or corridors is in the left one.
 class Lanes {
  public:
   explicit Lanes(const DrivingSettings& settings);
@@ -26,6 +27,9 @@ class Lanes {
   int middle_of_lane(int lane) const { return lane * per_lane_ + per_lane_ / 2; }
   double lane_centre_m(int lane) const { return (lane + 0.5) * lane_width_m_; }
   double corridor_centre_m(int corridor) const { return (corridor + 0.5) * corridor_width_m(); }
+  // Whether a body of this width, in the middle of the corridor, is between the two edges; touching
+  // them is allowed. Corridors off the road may be asked for.
+  bool fits(int corridor, double width_m, double right_edge_m, double left_edge_m) const;
 
  private:
   int lanes_;
@@ -35,12 +39,13 @@ class Lanes {
 
 // The free road along one corridor, bumper to bumper, for a swath as wide as the ego plus
 // side_clearance_m on each side. Without a vehicle in range: the gap is gap_range_m, the rate 0.
-// A vehicle beside the ego makes both gaps 0.
+// A vehicle beside the ego makes both gaps 0. Of several vehicles equally near, the one closing
+// fastest counts.
 struct CorridorGaps {
   double front_gap_m = 0.0;
   double front_rate_mps = 0.0;  // leader's speed minus ego speed: < 0 when closing
   double back_gap_m = 0.0;
-  double back_rate_mps = 0.0;   // ego speed minus follower's: < 0 when closing
+  double back_rate_mps = 0.0;  // ego speed minus follower's: < 0 when closing
 };
 
 // One entry a corridor of the road, from the right: [lanes * N_c]. A vehicle occupies the corridors

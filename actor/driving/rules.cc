@@ -1,0 +1,240 @@
+#include "actor/driving/rules.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "actor/driving/trajectory.h"
+#include "proto/failure.h"
+#include "proto/random.h"
+
+namespace corridor::driving {
+namespace {
+
+constexpr double kComfortBraking_mps2 = 2.0;  // planned with
+constexpr double kHardBraking_mps2 = 4.0;     // expected of a leader, at the worst
+constexpr double kStopGap_m = 1.0;            // left over when both have braked hard
+constexpr double kIncreaseHolds_s = 2.0;      // a rise of the set-point is to last so long
+
+// The room that must be left to go on with a lane change, as a share of that to begin one.
+constexpr double kGoOnShare = 0.5;
+
+double braking_way_m(double speed_mps, double braking_mps2) {
+  return speed_mps * speed_mps / (2 * braking_mps2);
+}
+
+// The way lost to a vehicle that closes in, until the speeds are equal.
+double closing_way_m(double rate_mps, double braking_mps2) {
+  return braking_way_m(std::max(0.0, -rate_mps), braking_mps2);
+}
+
+// How much is left of a corridor's gaps when whoever is behind brakes comfortably; < 0: too little.
+struct Slack {
+  double front_m = 0.0;
+  double back_m = 0.0;
+  double least_m() const { return std::min(front_m, back_m); }
+};
+
+Slack slack_of(const CorridorGaps& gaps, const RulesSettings& rules) {
+  return {
+      gaps.front_gap_m - rules.gap_min_m - closing_way_m(gaps.front_rate_mps, kComfortBraking_mps2),
+      gaps.back_gap_m - rules.gap_min_m - closing_way_m(gaps.back_rate_mps, kComfortBraking_mps2)};
+}
+
+// Room enough to move there, or at least no less than here: the same leader fills many corridors.
+bool acceptable(const Slack& there, const Slack& here) {
+  return there.front_m >= std::min(0.0, here.front_m) && there.back_m >= std::min(0.0, here.back_m);
+}
+
+}  // namespace
+
+RuleBasedMop::RuleBasedMop(const DrivingSettings& settings)
+    : settings_(settings), lanes_(settings) {}
+
+int RuleBasedMop::decide(const Situation& situation, const Window& window) {
+  const int change = corridor_change(situation, window);
+  return index_of({change, speed_change(situation, change)});
+}
+
+int RuleBasedMop::corridor_change(const Situation& situation, const Window& window) const {
+  const int corridor = lanes_.corridor_at(situation.scene.ego.d_m);
+  const auto gaps_in = [&](int c) -> const CorridorGaps& {
+    return situation.gaps[static_cast<std::size_t>(c)];
+  };
+  const CorridorGaps& gaps = gaps_in(corridor);
+  const Slack here = slack_of(gaps, settings_.rules);
+
+  const int off_middle = window.middle() - window.position_of(corridor);
+  const int towards_middle = (off_middle > 0) - (off_middle < 0);
+  const int wanted = std::clamp(corridor + towards_middle, 0, lanes_.corridors() - 1);
+  // The way back from a closed corridor may lead through another.
+  const bool allowed = window.is_open(wanted) || !window.is_open(corridor);
+  if (wanted != corridor && allowed && acceptable(slack_of(gaps_in(wanted), settings_.rules), here))
+    return towards_middle;
+
+  const double stopping_m = kStopGap_m + closing_way_m(gaps.front_rate_mps, kHardBraking_mps2);
+  if (gaps.front_gap_m >= stopping_m) return 0;
+  // Threatened: to whichever open neighbour leaves more.
+  int safest = 0;
+  double most_m = here.least_m();
+  for (const int change : {-1, 1}) {
+    if (!window.is_open(corridor + change)) continue;
+    const double left_m = slack_of(gaps_in(corridor + change), settings_.rules).least_m();
+    if (left_m > most_m) {
+      safest = change;
+      most_m = left_m;
+    }
+  }
+  return safest;
+}
+
+int RuleBasedMop::speed_change(const Situation& situation, int corridor_change) const {
+  const Ego& ego = situation.scene.ego;
+  const int corridor = lanes_.corridor_at(ego.d_m);
+  const int last = static_cast<int>(settings_.planner.speed_changes_mps.size()) - 1;
+  for (int speed_change = last; speed_change > 0; --speed_change) {
+    const MopAction action{corridor_change, speed_change};
+    const Target target = target_for(action, ego, settings_);
+    if (keeps_distance(situation.gaps[static_cast<std::size_t>(corridor)], ego, target) &&
+        keeps_distance(situation.gaps[static_cast<std::size_t>(target.corridor)], ego, target))
+      return speed_change;
+  }
+  return 0;
+}
+
+bool RuleBasedMop::keeps_distance(const CorridorGaps& gaps, const Ego& ego,
+                                  const Target& target) const {
+  if (gaps.front_gap_m >= settings_.planner.gap_range_m) return true;
+  const double step_s = settings_.step_s;
+  const double way_m = Trajectory(ego, target, settings_).at(step_s).s_m - ego.s_m;
+  const double speed_mps = target.set_point_mps;
+  const double leader_mps = std::max(0.0, ego.speed_mps + gaps.front_rate_mps);
+
+  // The worst: the leader brakes hard from now on, the ego from the next step on.
+  const double braking_mps2 = std::min(settings_.ego.deceleration_max_mps2,
+                                       -settings_.planner.speed_changes_mps.front() / step_s);
+  const double left_m = gaps.front_gap_m + braking_way_m(leader_mps, kHardBraking_mps2) - way_m -
+                        braking_way_m(speed_mps, braking_mps2);
+  if (left_m < kStopGap_m) return false;
+
+  // The usual: the leader goes on as it does.
+  const double gap_m = gaps.front_gap_m + leader_mps * step_s - way_m;
+  const double closing_mps = std::max(0.0, speed_mps - leader_mps);
+  const MopRewardSettings& reward = settings_.mop_reward;
+  const double headway_m = reward.headway_s * speed_mps + reward.standstill_gap_m;
+  if (closing_mps == 0.0 && speed_mps <= ego.set_point_mps)
+    return gap_m >= reward.near_low * headway_m;
+  const double ahead_s = speed_mps > ego.set_point_mps ? kIncreaseHolds_s : 0.0;
+  return gap_m - closing_mps * ahead_s >=
+         headway_m + braking_way_m(closing_mps, kComfortBraking_mps2);
+}
+
+RuleBasedBp::RuleBasedBp(const DrivingSettings& settings) : settings_(settings), lanes_(settings) {}
+
+void RuleBasedBp::begin_episode(std::uint64_t) { goal_lane_ = -1; }
+
+Command RuleBasedBp::decide(const Situation& situation) {
+  const Scene& scene = situation.scene;
+  const int lane = lanes_.lane_at(scene.ego.d_m);
+  // Arrived, or pushed out of reach, or out of room.
+  if (goal_lane_ >= 0 &&
+      (std::abs(goal_lane_ - lane) != 1 || !has_room(scene, goal_lane_, kGoOnShare)))
+    goal_lane_ = -1;
+  if (goal_lane_ < 0) goal_lane_ = better_lane(scene, lane);
+  if (goal_lane_ < 0) return Command::kKeep;
+  return goal_lane_ > lane ? Command::kLeft : Command::kRight;
+}
+
+int RuleBasedBp::better_lane(const Scene& scene, int lane) const {
+  const RulesSettings& rules = settings_.rules;
+  const double slow_mps = settings_.road.speed_limit_mps - rules.slow_leader_mps;
+  const double leader_mps = leader_speed_mps(scene, lane);
+  if (leader_mps < slow_mps) {
+    for (const int other : {lane + 1, lane - 1}) {
+      if (other < 0 || other >= lanes_.lanes()) continue;
+      if (leader_speed_mps(scene, other) >= leader_mps + rules.gain_mps &&
+          has_room(scene, other, 1.0))
+        return other;
+    }
+    return -1;
+  }
+  const int right = lane - 1;
+  const bool right_is_free =
+      right >= 0 && leader_speed_mps(scene, right) >= slow_mps &&
+      lane_gaps(scene, right, settings_).front_gap_m >= rules.return_right_s * scene.ego.speed_mps;
+  return right_is_free && has_room(scene, right, 1.0) ? right : -1;
+}
+
+double RuleBasedBp::leader_speed_mps(const Scene& scene, int lane) const {
+  const CorridorGaps gaps = lane_gaps(scene, lane, settings_);
+  const double limit_mps = settings_.road.speed_limit_mps;
+  if (gaps.front_gap_m >= std::min(settings_.rules.leader_range_m, settings_.planner.gap_range_m))
+    return limit_mps;
+  return std::min(limit_mps, scene.ego.speed_mps + gaps.front_rate_mps);
+}
+
+bool RuleBasedBp::has_room(const Scene& scene, int lane, double share) const {
+  const RulesSettings& rules = settings_.rules;
+  const CorridorGaps gaps = lane_gaps(scene, lane, settings_);
+  const double speed_mps = scene.ego.speed_mps;
+  const double follower_mps = std::max(0.0, speed_mps - gaps.back_rate_mps);
+  const double front_m = rules.front_gap_s * speed_mps + rules.gap_min_m +
+                         closing_way_m(gaps.front_rate_mps, kComfortBraking_mps2);
+  const double back_m = rules.back_gap_s * follower_mps + rules.gap_min_m +
+                        closing_way_m(gaps.back_rate_mps, kComfortBraking_mps2);
+  return gaps.front_gap_m >= share * front_m && gaps.back_gap_m >= share * back_m;
+}
+
+RandomBp::RandomBp(const DrivingSettings& settings) : settings_(settings), lanes_(settings) {}
+
+void RandomBp::begin_episode(std::uint64_t episode_seed) {
+  seed_ = episode_seed;
+  draws_ = 0;
+  goal_lane_ = -1;
+  flickers_ = false;
+  command_ = Command::kKeep;
+  // Episodes may be short: some are to begin with a lane change, some without.
+  period_ends_ = draw(0, settings_.random_bp.hold_steps_min);
+  command_ends_ = 0;
+}
+
+Command RandomBp::decide(const Situation& situation) {
+  const RandomBpSettings& random = settings_.random_bp;
+  const Ego& ego = situation.scene.ego;
+  const int lane = lanes_.lane_at(ego.d_m);
+  if (lane == goal_lane_) {  // arrived: hold it
+    goal_lane_ = -1;
+    period_ends_ = situation.step + draw(random.hold_steps_min, random.hold_steps_max);
+  }
+  if (situation.step >= period_ends_) begin_period(situation.step, lane);
+  if (goal_lane_ >= 0) return goal_lane_ > lane ? Command::kLeft : Command::kRight;
+  if (!flickers_) return Command::kKeep;
+  if (situation.step >= command_ends_) {
+    command_ = static_cast<Command>(draw(0, kBpCommands - 1));
+    command_ends_ = situation.step + draw(1, random.flicker_hold_max);
+  }
+  return feasible(command_, ego, settings_);
+}
+
+void RandomBp::begin_period(int step, int lane) {
+  const RandomBpSettings& random = settings_.random_bp;
+  goal_lane_ = -1;
+  flickers_ = random_unit(seed_, Purpose::kRandomBp, {draws_++}) < random.flicker_share;
+  if (flickers_) {
+    period_ends_ = step + random.flicker_steps;
+    command_ends_ = step;
+    return;
+  }
+  // What is not reached in the longest time between two changes is given up.
+  period_ends_ = step + random.hold_steps_max;
+  if (lanes_.lanes() == 1) return;
+  const int other = draw(0, lanes_.lanes() - 2);
+  goal_lane_ = other < lane ? other : other + 1;
+}
+
+int RandomBp::draw(int least, int most) {
+  CORRIDOR_CHECK(least <= most, "{} .. {}", least, most);
+  return least + static_cast<int>(random_below(static_cast<std::uint64_t>(most - least + 1), seed_,
+                                               Purpose::kRandomBp, {draws_++}));
+}
+
+}  // namespace corridor::driving

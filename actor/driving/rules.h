@@ -17,6 +17,12 @@ class RuleBasedBp : public BehaviourPlanner {
   Command decide(const Situation& situation) override;
 
  private:
+  int better_lane(const Scene& scene, int lane) const;  // or -1
+  // The speed limit where no leader is in leader_range_m.
+  double leader_speed_mps(const Scene& scene, int lane) const;
+  // At least this share of the gaps that a change to the lane needs.
+  bool has_room(const Scene& scene, int lane, double share) const;
+
   DrivingSettings settings_;
   Lanes lanes_;
   int goal_lane_ = -1;  // of the change under way; -1: none
@@ -30,12 +36,18 @@ class RuleBasedMop : public MotionPlanner {
   int decide(const Situation& situation, const Window& window) override;
 
  private:
+  int corridor_change(const Situation& situation, const Window& window) const;
+  int speed_change(const Situation& situation, int corridor_change) const;
+  // Whether a step towards `target` keeps a safe distance to the leader of these gaps.
+  bool keeps_distance(const CorridorGaps& gaps, const Ego& ego, const Target& target) const;
+
   DrivingSettings settings_;
   Lanes lanes_;
 };
 
-// Asks for a lane change about every hundred steps, and in between for periods of short random
-// commands, since a trained BP flickers ([random_bp]). A function of (episode seed, step, lane).
+// Asks for a lane change about every hundred steps until the ego is there, and in between for
+// periods of short random commands, since a trained BP flickers ([random_bp]). A function of the
+// episode seed and of the steps and lanes seen; never asks for a lane that does not exist.
 class RandomBp : public BehaviourPlanner {
  public:
   explicit RandomBp(const DrivingSettings& settings);
@@ -43,11 +55,14 @@ class RandomBp : public BehaviourPlanner {
   Command decide(const Situation& situation) override;
 
  private:
+  void begin_period(int step, int lane);
+  int draw(int least, int most);  // uniform, both included
+
   DrivingSettings settings_;
   Lanes lanes_;
   std::uint64_t seed_ = 0;
   std::uint64_t draws_ = 0;
-  int goal_lane_ = -1;
+  int goal_lane_ = -1;  // asked for until reached; -1: none
   bool flickers_ = false;
   int period_ends_ = 0;   // step
   int command_ends_ = 0;  // step, while flickering

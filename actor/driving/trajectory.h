@@ -17,8 +17,10 @@ struct TrajectoryPoint {
 
 // Along the road: constant acceleration within the ego's limits up to the set-point, which is then
 // held (exact integration, never backwards). Across it: a quintic that starts with the ego's
-// position and lateral speed and arrives at the corridor's centre without lateral speed or
-// acceleration after corridor_change_s for each corridor of distance; then straight on.
+// position and lateral speed and arrives exactly at the corridor's centre without lateral speed or
+// acceleration; then straight on. It takes corridor_change_s for each corridor of distance, to
+// which moving away adds the way to turn round in, and at least a step, so that planning anew at
+// every step arrives too.
 class Trajectory {
  public:
   Trajectory(const Ego& ego, const Target& target, const DrivingSettings& settings);
@@ -35,8 +37,9 @@ class Trajectory {
   double speed_mps_ = 0.0;
   double acceleration_mps2_ = 0.0;  // signed, until the set-point is reached
   double ramp_s_ = 0.0;             // time at which it is reached
+  double destination_m_ = 0.0;      // the target corridor's centre
   double lateral_duration_s_ = 0.0;
-  double lateral_[6] = {};          // coefficients of d(t), constant first
+  double lateral_[6] = {};  // coefficients of d(t), constant first
 };
 
 }  // namespace corridor::driving

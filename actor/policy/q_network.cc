@@ -1,0 +1,82 @@
+#include "actor/policy/q_network.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "proto/failure.h"
+
+namespace corridor::policy {
+namespace {
+
+using RowMajor = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+void apply(const NetworkShape::Layer& layer, const std::vector<float>& parameters,
+           const Eigen::Ref<const Eigen::VectorXf>& input, Eigen::VectorXf& output) {
+  const Eigen::Map<const RowMajor> weights(parameters.data() + layer.weights, layer.outputs,
+                                           layer.inputs);
+  const Eigen::Map<const Eigen::VectorXf> biases(parameters.data() + layer.biases, layer.outputs);
+  output.noalias() = weights * input;
+  output += biases;
+}
+
+}  // namespace
+
+QNetwork::QNetwork(NetworkShape shape, std::vector<float> parameters)
+    : shape_(std::move(shape)), layers_(shape_.layers()), parameters_(std::move(parameters)) {
+  CORRIDOR_CHECK(parameters_.size() == shape_.parameters(), "{} parameters for a network of {}",
+                 parameters_.size(), shape_.parameters());
+  for (const auto& layer : layers_) activations_.emplace_back(layer.outputs);
+}
+
+std::span<const float> QNetwork::q_values(std::span<const float> observation) {
+  CORRIDOR_CHECK(observation.size() == static_cast<std::size_t>(shape_.observations),
+                 "{} numbers for {} inputs", observation.size(), shape_.observations);
+  const Eigen::Map<const Eigen::VectorXf> input(observation.data(),
+                                                static_cast<Eigen::Index>(observation.size()));
+  const std::size_t hidden = shape_.hidden.size();
+  for (std::size_t i = 0; i < hidden; ++i) {
+    if (i == 0) {
+      apply(layers_[i], parameters_, input, activations_[i]);
+    } else {
+      apply(layers_[i], parameters_, activations_[i - 1], activations_[i]);
+    }
+    activations_[i] = activations_[i].cwiseMax(0.0f);
+  }
+  const auto& last_hidden = activations_[hidden - 1];
+  Eigen::VectorXf& q = activations_.back();
+  apply(layers_.back(), parameters_, last_hidden, q);
+  if (shape_.dueling) {
+    Eigen::VectorXf& value = activations_[hidden];
+    apply(layers_[hidden], parameters_, last_hidden, value);
+    q.array() += value[0] - q.mean();
+  }
+  return {q.data(), static_cast<std::size_t>(q.size())};
+}
+
+int QNetwork::greedy(std::span<const float> observation) { return argmax(q_values(observation)); }
+
+int argmax(std::span<const float> values) {
+  return static_cast<int>(std::max_element(values.begin(), values.end()) - values.begin());
+}
+
+std::vector<float> td_errors(std::span<const float> rows, QNetwork& network) {
+  const RowLayout layout{network.shape().observations};
+  const std::size_t count = rows.size() / layout.stride();
+  std::vector<float> errors(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto row = rows.subspan(i * layout.stride(), layout.stride());
+    float target = row[layout.n_step_return()];
+    const float discount = row[layout.discount()];
+    if (discount > 0.0f) {
+      const auto next =
+          network.q_values(row.subspan(layout.next_observation(), layout.next_observation()));
+      target += discount * *std::max_element(next.begin(), next.end());
+    }
+    const auto now = network.q_values(row.first(layout.next_observation()));
+    errors[i] = std::abs(target - now[static_cast<std::size_t>(row[layout.action()])]);
+  }
+  return errors;
+}
+
+}  // namespace corridor::policy

@@ -1,0 +1,226 @@
+#include "actor/world/sumo_world.h"
+
+#include <libsumo/libsumo.h>
+
+#include <algorithm>
+#include <atomic>
+#include <utility>
+
+#include "proto/failure.h"
+#include "proto/random.h"
+
+namespace corridor::world {
+namespace {
+
+using driving::Ego;
+using driving::Scene;
+using driving::Vehicle;
+using Sumo = libsumo::Simulation;
+using SumoVehicle = libsumo::Vehicle;
+
+constexpr const char* kEgo = "ego";
+constexpr const char* kEdge = "road";
+constexpr const char* kRoute = "road";
+
+// SUMO's modes (its TraCI documentation, "Change Vehicle State").
+constexpr int kNoSpeedChecks = 0;
+constexpr int kNoLaneChanges = 0;          // of its own, and requested ones without a look
+constexpr int kDefaultLaneChanges = 1621;  // its own, requests with a look
+constexpr int kKeepExactPosition = 2;      // moveToXY's keepRoute
+
+std::atomic<bool> world_exists = false;
+
+std::string sumo_id(int id) { return fmt::format("v{}", id); }
+std::string lane_id(int lane) { return fmt::format("{}_{}", kEdge, lane); }
+
+void require_file(const std::filesystem::path& file) {
+  if (!std::filesystem::is_regular_file(file)) {
+    throw Failure("no file {} for SUMO: the run directory is incomplete", file.string());
+  }
+}
+
+// Calls into SUMO; what it throws becomes a Failure (its details are on standard error).
+template <typename Function>
+auto in_sumo(const char* doing, Function&& function) {
+  try {
+    return function();
+  } catch (const Failure&) {
+    throw;
+  } catch (const std::exception& error) {
+    throw Failure("SUMO failed while {}: {}", doing, error.what());
+  }
+}
+
+}  // namespace
+
+SumoWorld::SumoWorld(const WorldSettings& settings, std::filesystem::path network,
+                     std::filesystem::path vehicle_types)
+    : settings_(settings), network_(std::move(network)), vehicle_types_(std::move(vehicle_types)) {
+  require_file(network_);
+  require_file(vehicle_types_);
+  const Traffic traffic(TrafficScenario{settings.traffic, settings.road, settings.ego, 1.0, {}}, 0);
+  const double needed_m = traffic.start().s_m + settings.traffic.window_m +
+                          settings.simulation.episode_steps * settings.simulation.step_s *
+                              settings.road.speed_limit_mps;
+  if (settings.road.length_m < needed_m) {
+    throw Failure(
+        "road.length_m = {} is too short: {} steps of {} s at the speed limit, and the traffic's "
+        "window at both ends, need {:.0f}",
+        settings.road.length_m, settings.simulation.episode_steps, settings.simulation.step_s,
+        needed_m);
+  }
+  CORRIDOR_CHECK(!world_exists.exchange(true), "libsumo holds one simulation a process");
+}
+
+SumoWorld::~SumoWorld() {
+  if (running_) Sumo::close();
+  world_exists = false;
+}
+
+driving::Scene SumoWorld::begin(const EpisodeStart& start) {
+  end();
+  return in_sumo("starting an episode", [&] {
+    Sumo::load(options(start));
+    running_ = true;
+    driver_ = start.driver;
+    const auto right_lane = libsumo::Lane::getShape(lane_id(0)).value;
+    right_edge_y_m_ = right_lane.front().y - settings_.road.lane_width_m / 2;
+    traffic_.emplace(traffic_scenario(), start.seed);
+    scene_ = Scene{traffic_->start(), {}};
+    add_ego(scene_.ego, start.driver);
+    for (const Entrance& entrance : traffic_->populate(scene_.ego)) add(entrance);
+    return scene_;
+  });
+}
+
+StepResult SumoWorld::step(const driving::Trajectory& trajectory) {
+  CORRIDOR_CHECK(running_ && driver_ == EgoDriver::kPlanner);
+  return in_sumo("placing the ego and stepping", [&] {
+    const driving::TrajectoryPoint point = trajectory.at(settings_.simulation.step_s);
+    // A body's width inside the road: SUMO loses a vehicle whose middle is off it.
+    const double margin_m = settings_.ego.width_m / 2;
+    const double road_width_m = settings_.road.lanes * settings_.road.lane_width_m;
+    const double d_m = std::clamp(point.d_m, margin_m, road_width_m - margin_m);
+    SumoVehicle::moveToXY(kEgo, kEdge, -1, point.s_m, right_edge_y_m_ + d_m,
+                          libsumo::INVALID_DOUBLE_VALUE, kKeepExactPosition);
+    SumoVehicle::setSpeed(kEgo, point.speed_mps);
+    // SUMO moves the others first, past the ego where it was, and then places the ego: after the
+    // step all are at the same instant.
+    Sumo::step();
+    return finish_step({point.s_m, d_m, point.speed_mps, point.acceleration_mps2,
+                        point.lateral_speed_mps, trajectory.target().set_point_mps});
+  });
+}
+
+StepResult SumoWorld::step_by_world() {
+  CORRIDOR_CHECK(running_ && driver_ == EgoDriver::kWorld);
+  return in_sumo("stepping", [&] {
+    const Ego before = scene_.ego;
+    Sumo::step();
+    const libsumo::TraCIPosition position = SumoVehicle::getPosition(kEgo);
+    const double speed_mps = SumoVehicle::getSpeed(kEgo);
+    const double d_m = position.y - right_edge_y_m_;
+    const double step_s = settings_.simulation.step_s;
+    return finish_step({position.x, d_m, speed_mps, (speed_mps - before.speed_mps) / step_s,
+                        (d_m - before.d_m) / step_s, 0.0});
+  });
+}
+
+void SumoWorld::end() {
+  if (!std::exchange(running_, false)) return;
+  in_sumo("ending an episode", [] { Sumo::close(); });
+}
+
+StepResult SumoWorld::finish_step(const driving::Ego& ego_after) {
+  const Scene before = scene_;
+  scene_.ego = ego_after;
+  read_others();
+  StepResult result;
+  result.collision = driving::find_collision(before, scene_, settings_.ego);
+  apply(traffic_->decide(scene_));
+  result.scene = scene_;
+  return result;
+}
+
+void SumoWorld::read_others() {
+  for (Vehicle& vehicle : scene_.others) {
+    const std::string id = sumo_id(vehicle.id);
+    const libsumo::TraCIPosition position = SumoVehicle::getPosition(id);
+    const double d_m = position.y - right_edge_y_m_;
+    vehicle.s_m = position.x;
+    vehicle.lateral_speed_mps = (d_m - vehicle.d_m) / settings_.simulation.step_s;
+    vehicle.d_m = d_m;
+    vehicle.speed_mps = SumoVehicle::getSpeed(id);
+  }
+}
+
+void SumoWorld::apply(const TrafficChange& change) {
+  for (const int id : change.leaving) {
+    SumoVehicle::remove(sumo_id(id));
+    std::erase_if(scene_.others, [&](const Vehicle& vehicle) { return vehicle.id == id; });
+  }
+  for (const Entrance& entrance : change.entering) add(entrance);
+  for (const int id : change.seeing_again) {
+    SumoVehicle::setLaneChangeMode(sumo_id(id), kDefaultLaneChanges);
+  }
+  for (const BlindDriver& driver : change.going_blind) {
+    SumoVehicle::setLaneChangeMode(sumo_id(driver.id), kNoLaneChanges);
+    SumoVehicle::changeSublane(sumo_id(driver.id), driver.shift_m);
+  }
+}
+
+// `add` alone leaves a vehicle waiting for SUMO's own insertion; moveTo puts it on the road at
+// once.
+void SumoWorld::add(const Entrance& entrance) {
+  const std::string id = sumo_id(entrance.vehicle.id);
+  SumoVehicle::add(id, kRoute, entrance.type);
+  SumoVehicle::setSpeedFactor(id, entrance.speed_factor);
+  SumoVehicle::moveTo(id, lane_id(entrance.lane), entrance.vehicle.s_m);
+  SumoVehicle::setPreviousSpeed(id, entrance.vehicle.speed_mps);
+  const auto place =
+      std::lower_bound(scene_.others.begin(), scene_.others.end(), entrance.vehicle.id,
+                       [](const Vehicle& vehicle, int wanted) { return vehicle.id < wanted; });
+  scene_.others.insert(place, entrance.vehicle);
+}
+
+void SumoWorld::add_ego(const driving::Ego& ego, EgoDriver driver) {
+  const int lane = static_cast<int>(ego.d_m / settings_.road.lane_width_m);
+  SumoVehicle::add(kEgo, kRoute, kEgo);
+  SumoVehicle::moveTo(kEgo, lane_id(lane), ego.s_m);
+  SumoVehicle::setPreviousSpeed(kEgo, ego.speed_mps);
+  if (driver == EgoDriver::kWorld) return;
+  SumoVehicle::setSpeedMode(kEgo, kNoSpeedChecks);
+  SumoVehicle::setLaneChangeMode(kEgo, kNoLaneChanges);
+}
+
+std::vector<std::string> SumoWorld::options(const EpisodeStart& start) const {
+  const std::uint64_t seed = random_bits(start.seed, Purpose::kSumo, {}) >> 33;
+  std::vector<std::string> result = {
+      "--net-file", network_.string(), "--route-files", vehicle_types_.string(), "--seed",
+      fmt::format("{}", seed), "--step-length", fmt::format("{}", settings_.simulation.step_s),
+      "--lateral-resolution", fmt::format("{}", settings_.simulation.lateral_resolution_m),
+      "--time-to-teleport", "-1",
+      // Collisions are ours to find (actor/driving/collision.h).
+      "--collision.action", "none", "--collision.mingap-factor", "0", "--no-step-log",
+      "--no-warnings", "--duration-log.disable", "--xml-validation", "never"};
+  if (!start.fcd_output.empty()) {
+    result.insert(result.end(),
+                  {"--fcd-output", start.fcd_output.string(), "--fcd-output.attributes",
+                   "x,y,angle,type,speed,acceleration,pos,lane,posLat", "--precision", "4"});
+  }
+  return result;
+}
+
+// The sizes of the vehicle types, as the file that SUMO has loaded gives them.
+TrafficScenario SumoWorld::traffic_scenario() const {
+  const auto size = [](const char* type) {
+    return VehicleSize{libsumo::VehicleType::getLength(type), libsumo::VehicleType::getWidth(type)};
+  };
+  return {settings_.traffic,
+          settings_.road,
+          settings_.ego,
+          settings_.simulation.step_s,
+          {size("car_center"), size("slow_center"), size("truck_center")}};
+}
+
+}  // namespace corridor::world

@@ -19,7 +19,7 @@ enum class EgoDriver {
 struct EpisodeStart {
   std::uint64_t seed = 0;  // all that is random in the episode follows from it
   EgoDriver driver = EgoDriver::kPlanner;
-  std::filesystem::path fcd_output;  // SUMO's own record of every vehicle's motion; empty: none
+  std::filesystem::path fcd_output{};  // SUMO's own record of every vehicle's motion; empty: none
 };
 
 struct StepResult {

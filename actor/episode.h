@@ -1,0 +1,87 @@
+// One episode: the hierarchy's step (command -> window -> action -> trajectory -> world -> rewards)
+// in one place, for training, evaluation and driving again.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "actor/driving/planner.h"
+#include "actor/world/world.h"
+#include "proto/hash.h"
+#include "proto/settings.h"
+
+namespace corridor::actor {
+
+// What happened in one step.
+struct StepOutcome {
+  double bp_reward = 0.0;       // as in the paper: no shaping
+  double mop_reward = 0.0;      // 0 where the world drives
+  bool entered_closed = false;  // the ego went into a corridor that was closed: over for learning
+  bool episode_ended = false;   // by a collision or the step limit
+};
+
+// What happened in an episode so far. Rewards and counts are totals.
+struct EpisodeSummary {
+  int steps = 0;
+  double bp_reward = 0.0;
+  double mop_reward = 0.0;
+  std::optional<driving::Collision> collision;
+  int lane_changes = 0;
+  int hard_brakes = 0;  // steps with a deceleration above kHardBrake_mps2
+  double distance_m = 0.0;
+  std::vector<std::int64_t> lane_steps;  // steps that ended in each lane
+};
+inline constexpr double kHardBrake_mps2 = 4.0;
+
+// One thread owns it; `world` outlives it.
+class Episode {
+ public:
+  Episode(const RunConfig& config, world::World& world);
+
+  void begin(const world::EpisodeStart& start);
+  // Leaves the episode, so that the world's files are complete.
+  void end();
+
+  // What the planners are to decide on now.
+  const driving::Situation& situation() const { return situation_; }
+
+  // The corridors that the MoP is shown for a command (one that asks for a missing lane: kKeep).
+  driving::Window window(driving::Command command) const;
+
+  StepOutcome step(driving::Command command, int mop_action);
+  StepOutcome step_by_world();
+
+  const EpisodeSummary& summary() const { return summary_; }
+  // The actions of each step so far (driving/action.h: pack); empty where the world drives.
+  const std::vector<std::uint8_t>& actions() const { return actions_; }
+  // Over every vehicle's position and speed at every step so far: equal for equal episodes.
+  std::uint64_t trajectory_hash() const { return hash_.value(); }
+
+ private:
+  StepOutcome advance(const world::StepResult& result);
+  void see(driving::Scene scene);
+
+  DrivingSettings settings_;
+  driving::Lanes lanes_;
+  int step_limit_;
+  world::World& world_;
+  driving::Situation situation_;
+  EpisodeSummary summary_;
+  std::vector<std::uint8_t> actions_;
+  Hash hash_;
+};
+
+// Drives one episode from `start` to its end, at most `step_limit` steps of it, and leaves it open.
+void drive(Episode& episode, const world::EpisodeStart& start, driving::BehaviourPlanner& bp,
+           driving::MotionPlanner& mop, std::int64_t step_limit);
+void drive_by_world(Episode& episode, const world::EpisodeStart& start, std::int64_t step_limit);
+
+// The seeds that episodes start from.
+std::uint64_t training_episode_seed(std::uint64_t run_seed, Phase phase, int actor,
+                                    std::uint64_t episode);
+std::uint64_t selection_episode_seed(std::uint64_t run_seed, Phase phase, std::uint64_t episode);
+std::uint64_t test_episode_seed(std::uint64_t evaluation_seed, std::uint64_t episode);
+
+}  // namespace corridor::actor

@@ -1,0 +1,228 @@
+#include "actor/training.h"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <chrono>
+#include <optional>
+#include <thread>
+
+#include "actor/rollout.h"
+#include "proto/codec.h"
+#include "proto/endpoint.h"
+#include "proto/failure.h"
+#include "proto/metrics.h"
+#include "proto/program.h"
+#include "proto/random.h"
+#include "proto/schedule.h"
+
+namespace corridor::actor {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+// How long one look at a socket may last before the stop flag is looked at.
+constexpr Duration kPatience{100};
+// Steps of the phase, all actors together, between two lines of metrics.
+constexpr std::int64_t kStepsPerMetricsLine = 4000;
+
+// The next answer; nothing when the process is asked to stop first.
+std::optional<Bytes> answer(Client& client) {
+  while (!stop_requested()) {
+    if (auto body = client.receive(kPatience)) return body;
+  }
+  return std::nullopt;
+}
+
+template <typename Reply, typename Variant>
+Reply expect(Variant reply, const char* peer) {
+  if (auto* value = std::get_if<Reply>(&reply)) return std::move(*value);
+  throw Failure("the {} answered with a message that was not asked for", peer);
+}
+
+// Where an actor's time went since the last line of metrics.
+struct Times {
+  double drive_s = 0.0;
+  double wait_for_weights_s = 0.0;
+  double wait_for_replay_s = 0.0;
+};
+
+class Trainer {
+ public:
+  Trainer(const RunConfig& config, const RunDirectory& directory, int actor, world::World& world)
+      : config_(config),
+        actor_(actor),
+        world_(world),
+        schedule_(config),
+        metrics_(directory.metrics(fmt::format("actor-{}", actor))),
+        replay_(make_client(directory, true)),
+        learner_(make_client(directory, false)) {}
+
+  void run() {
+    replay_.send(encode(ReplayRequest(Join{})));
+    const auto body = answer(replay_);
+    if (!body) return;
+    const auto joined = expect<Joined>(decode_replay_reply(*body), "replay server");
+    spdlog::info("joins at round {} of {}", joined.next_round, schedule_.rounds());
+    OpenEpisode open = joined.open;
+    for (std::uint64_t round = joined.next_round; round < schedule_.rounds(); ++round) {
+      if (!rollout_ || rollout_->phase() != schedule_.phase_of(round)) {
+        rollout_.emplace(config_, actor_, world_, round, open);
+        open = {};
+      }
+      if (!drive_round(round)) return;
+    }
+    drain(replay_);
+    drain(learner_);
+  }
+
+ private:
+  Client make_client(const RunDirectory& directory, bool replay) const {
+    const std::string run_id = read_manifest(directory).run_id;
+    const Addresses where = addresses(config_.run, run_id);
+    const auto started = std::chrono::system_clock::now().time_since_epoch();
+    ClientLimits limits;
+    limits.peer_timeout = Duration(static_cast<std::int64_t>(config_.run.peer_timeout_s * 1000.0));
+    return Client(replay ? where.replay : where.learner, replay ? "replay server" : "learner",
+                  {run_id, Role::kActor, static_cast<std::uint32_t>(actor_),
+                   static_cast<std::uint64_t>(
+                       std::chrono::duration_cast<std::chrono::nanoseconds>(started).count())},
+                  limits);
+  }
+
+  // False when the process is asked to stop.
+  bool drive_round(std::uint64_t round) {
+    if (!fetch_weights(schedule_.weights_version(round))) return false;
+    const auto start = Clock::now();
+    if (schedule_.selects_in(round)) {
+      learner_.send(encode(LearnerRequest(rollout_->select(weights_))));
+      ++unread_notes_;
+    }
+    ask_for_weights_of(round + 1);
+    const Insert chunk = rollout_->drive_round(weights_);
+    times_.drive_s += seconds_since(start);
+    delay(round);
+
+    // One chunk may be under way while the next is driven, not two.
+    const auto wait_start = Clock::now();
+    if (!drain(replay_)) return false;
+    times_.wait_for_replay_s += seconds_since(wait_start);
+    replay_.send(encode(ReplayRequest(chunk)));
+    report(round);
+    return true;
+  }
+
+  // The weights of the next round are asked for while this one is driven: they arrive meanwhile.
+  void ask_for_weights_of(std::uint64_t round) {
+    if (round >= schedule_.rounds()) return;
+    const std::uint64_t version = schedule_.weights_version(round);
+    if (asked_ == version) return;
+    learner_.send(encode(LearnerRequest(WeightsWanted{version})));
+    asked_ = version;
+  }
+
+  bool fetch_weights(std::uint64_t version) {
+    const auto start = Clock::now();
+    if (asked_ != version) {
+      learner_.send(encode(LearnerRequest(WeightsWanted{version})));
+      asked_ = version;
+    }
+    while (!have_ || *have_ != version) {
+      const auto body = answer(learner_);
+      if (!body) return false;
+      LearnerReply reply = decode_learner_reply(*body);
+      if (std::holds_alternative<Noted>(reply) && unread_notes_ > 0) {
+        --unread_notes_;
+        continue;
+      }
+      weights_ = expect<Weights>(std::move(reply), "learner");
+      have_ = weights_.version;
+      check_weights();
+    }
+    times_.wait_for_weights_s += seconds_since(start);
+    return true;
+  }
+
+  void check_weights() const {
+    if (weights_.version != asked_ ||
+        weights_.mop.size() != config_.network(Phase::kMop).parameters() ||
+        weights_.bp.size() != config_.network(Phase::kBp).parameters()) {
+      throw Failure(
+          "the learner sent weights of version {} with {} and {} parameters, which are "
+          "not those asked for: is it of another configuration?",
+          weights_.version, weights_.mop.size(), weights_.bp.size());
+    }
+  }
+
+  static bool drain(Client& client) {
+    while (client.unanswered() > 0) {
+      if (!answer(client)) return false;
+    }
+    return true;
+  }
+
+  void delay(std::uint64_t round) const {
+    if (config_.run.delay_ms_max <= 0.0) return;
+    const double share = random_unit(config_.run.seed, Purpose::kWireDelay,
+                                     {static_cast<std::uint64_t>(actor_) + 10, round});
+    std::this_thread::sleep_for(
+        std::chrono::duration<double, std::milli>(share * config_.run.delay_ms_max));
+  }
+
+  void report(std::uint64_t round) {
+    const std::int64_t lines_apart =
+        std::max<std::int64_t>(1, kStepsPerMetricsLine / schedule_.steps_per_round());
+    const bool last = round + 1 == schedule_.rounds() ||
+                      schedule_.phase_of(round + 1) != schedule_.phase_of(round);
+    if (static_cast<std::int64_t>(round + 1) % lines_apart != 0 && !last) return;
+    const RolloutTotals totals = rollout_->take_totals();
+    const double passed_s = seconds_since(std::exchange(line_start_, Clock::now()));
+    const Times times = std::exchange(times_, {});
+    const auto steps = static_cast<double>(std::max<std::int64_t>(totals.steps, 1));
+    std::vector<std::pair<std::string, double>> values = {
+        {"charts/SPS", steps / passed_s},
+        {"charts/reward_per_1000", 1000.0 * totals.reward / steps},
+        {"charts/collisions_per_1000", 1000.0 * static_cast<double>(totals.collisions) / steps},
+        {"charts/epsilon", totals.epsilon},
+        {"time/drive", times.drive_s / passed_s},
+        {"time/wait_for_weights", times.wait_for_weights_s / passed_s},
+        {"time/wait_for_replay", times.wait_for_replay_s / passed_s}};
+    if (totals.episodes > 0) {
+      const auto episodes = static_cast<double>(totals.episodes);
+      values.emplace_back("charts/episodic_return", totals.episodic_return / episodes);
+      values.emplace_back("charts/episodes", episodes);
+    }
+    const Phase phase = schedule_.phase_of(round);
+    const std::int64_t phase_steps =
+        schedule_.phase_steps_before(round) + schedule_.steps_per_round();
+    metrics_.write(phase_name(phase), round, phase_steps, values);
+  }
+
+  const RunConfig& config_;
+  int actor_;
+  world::World& world_;
+  Schedule schedule_;
+  MetricsWriter metrics_;
+  Client replay_;
+  Client learner_;
+  std::optional<PhaseRollout> rollout_;
+
+  Weights weights_;
+  std::optional<std::uint64_t> have_;   // version of weights_
+  std::optional<std::uint64_t> asked_;  // the latest version asked for
+  int unread_notes_ = 0;
+  Times times_;
+  Clock::time_point line_start_ = Clock::now();
+};
+
+}  // namespace
+
+void train(const RunConfig& config, const RunDirectory& directory, int actor, world::World& world) {
+  Trainer(config, directory, actor, world).run();
+}
+
+}  // namespace corridor::actor

@@ -1,0 +1,97 @@
+// The traffic around the ego, decided: who is there at the start, who leaves and who enters, and
+// who drives blindly. Pure: a function of the settings, the episode's seed and the scenes shown;
+// the world carries the decisions out.
+//
+// A treadmill: a drawn number of vehicles is kept up within window_m of the ego, ahead and behind.
+// One that leaves the window is removed, and another, of random kind, enters at the other end as
+// soon as one of the lanes has room there. The road far from the ego is empty.
+//
+// Blind drivers: at blind_rate_per_s in all, a vehicle within blind_range_m along the road and
+// beside the ego's lane moves over by one lane width towards the ego without looking, and for
+// blind_duration_s looks at nobody beside it.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "actor/driving/scene.h"
+#include "proto/settings.h"
+
+namespace corridor::world {
+
+enum class VehicleKind { kCar = 0, kSlow = 1, kTruck = 2 };
+inline constexpr int kVehicleKinds = 3;
+
+struct VehicleSize {
+  double length_m = 0.0;
+  double width_m = 0.0;
+};
+
+// What Traffic needs to know of the scenario.
+struct TrafficScenario {
+  TrafficSettings traffic;
+  RoadSettings road;
+  EgoSettings ego;
+  double step_s = 1.0;
+  std::array<VehicleSize, kVehicleKinds> sizes;
+};
+
+// A vehicle that is put on the road, in the middle of a lane.
+struct Entrance {
+  driving::Vehicle vehicle;
+  int lane = 0;
+  std::string type;           // SUMO's vehicle type (scenarios/sumo_files.h)
+  double speed_factor = 1.0;  // desired speed / speed limit
+};
+
+struct BlindDriver {
+  int id = 0;
+  double shift_m = 0.0;  // > 0 to the left
+};
+
+struct TrafficChange {
+  std::vector<int> leaving;  // ids
+  std::vector<Entrance> entering;
+  std::vector<BlindDriver> going_blind;
+  std::vector<int> seeing_again;  // ids; never of vehicles that have left
+};
+
+class Traffic {
+ public:
+  Traffic(const TrafficScenario& scenario, std::uint64_t episode_seed);
+
+  // Where the ego starts: the same s always, a drawn lane, the speed of a car of mean haste.
+  driving::Ego start() const;
+  // Called once, for the scene's first vehicles.
+  std::vector<Entrance> populate(const driving::Ego& ego);
+  // Called after every step with all that is on the road.
+  TrafficChange decide(const driving::Scene& scene);
+
+ private:
+  // A vehicle that is to be on the road and waits for room.
+  struct Candidate {
+    Entrance entrance;   // without place and speed
+    bool ahead = false;  // at which end of the window it enters
+  };
+  using Road = std::vector<driving::Vehicle>;
+
+  Candidate draw(bool ahead);
+  double draw_speed_factor(std::uint64_t id) const;
+  bool place(Entrance& entrance, int lane, double s_m, Road& road) const;
+  void let_in(double ego_s_m, Road& road, TrafficChange& change);
+  void blind(const driving::Scene& scene, TrafficChange& change);
+  driving::Vehicle as_vehicle(const driving::Ego& ego) const;
+
+  TrafficScenario scenario_;
+  std::uint64_t seed_;
+  std::uint64_t step_ = 0;
+  int next_id_ = 1;
+  std::vector<Candidate> waiting_;
+  std::map<int, std::uint64_t> blind_until_;  // id -> step at which it sees again
+};
+
+}  // namespace corridor::world

@@ -1,0 +1,81 @@
+#include "cluster/check.h"
+
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+
+#include "cluster/text.h"
+#include "proto/failure.h"
+#include "proto/run_config.h"
+#include "proto/schedule.h"
+#include "scenarios/sumo_files.h"
+
+namespace corridor::cluster {
+namespace {
+
+class TemporaryDirectory {
+ public:
+  TemporaryDirectory()
+      : path_((std::filesystem::temp_directory_path() / "corridor-check-XXXXXX").string()) {
+    if (mkdtemp(path_.data()) == nullptr) {
+      throw Failure("cannot create {}: {}", path_, std::strerror(errno));
+    }
+  }
+  ~TemporaryDirectory() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  TemporaryDirectory(const TemporaryDirectory&) = delete;
+  TemporaryDirectory& operator=(const TemporaryDirectory&) = delete;
+
+  std::filesystem::path path() const { return path_; }
+
+ private:
+  std::string path_;
+};
+
+std::string phase_line(const RunConfig& config, const Schedule& schedule, Phase phase) {
+  const DqnSettings& dqn = config.phase(phase);
+  const PlannerShape shape = config.shape(phase);
+  const std::size_t stride = RowLayout{shape.observations}.stride();
+  const double memory_mib =
+      static_cast<double>(dqn.capacity) * static_cast<double>(stride * sizeof(float)) / 1048576.0;
+  return fmt::format(
+      "  {:<11} {} steps in {} rounds; {} observations, {} actions; replay of {} rows, {:.0f} "
+      "MiB\n",
+      phase_name(phase), grouped(dqn.steps),
+      grouped(static_cast<std::int64_t>(schedule.rounds_of(phase))), shape.observations,
+      shape.actions, grouped(dqn.capacity), memory_mib);
+}
+
+}  // namespace
+
+std::string summary(const RunConfig& config) {
+  const Schedule schedule(config);
+  const RoadSettings& road = config.road;
+  const TrafficSettings& traffic = config.traffic;
+  return fmt::format(
+             "  road        {} lanes of {} m, {:.1f} km, {:.0f} km/h\n"
+             "  traffic     {} to {} vehicles within {:.0f} m; {:.0f} % slow, {:.0f} % trucks; "
+             "{} blind drivers a second\n"
+             "  time        steps of {} s, episodes of {}; {} actors, rounds of {} steps each\n",
+             road.lanes, road.lane_width_m, road.length_m / 1000.0, 3.6 * road.speed_limit_mps,
+             traffic.vehicles_min, traffic.vehicles_max, traffic.window_m,
+             100.0 * traffic.slow_share, 100.0 * traffic.truck_share, traffic.blind_rate_per_s,
+             config.simulation.step_s, config.simulation.episode_steps, config.run.actors,
+             config.schedule.steps_per_round) +
+         phase_line(config, schedule, Phase::kMop) + phase_line(config, schedule, Phase::kBp) +
+         fmt::format("  evaluation  {} steps for each planner, {} seed{}\n",
+                     grouped(config.evaluation.steps), config.evaluation.seeds.size(),
+                     config.evaluation.seeds.size() == 1 ? "" : "s");
+}
+
+int check(const std::filesystem::path& scenario) {
+  const RunConfig config = load_run_config(scenario);
+  const TemporaryDirectory directory;
+  scenarios::write_sumo_files(config, directory.path());
+  fmt::print("{}: ok\n{}", scenario.string(), summary(config));
+  return 0;
+}
+
+}  // namespace corridor::cluster

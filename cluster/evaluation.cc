@@ -1,0 +1,193 @@
+#include "cluster/evaluation.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "cluster/checkpoint.h"
+#include "cluster/evaluation_table.h"
+#include "cluster/local.h"
+#include "cluster/plan.h"
+#include "cluster/progress.h"
+#include "cluster/text.h"
+#include "proto/failure.h"
+#include "proto/run_config.h"
+#include "proto/schedule.h"
+
+namespace corridor::cluster {
+namespace {
+
+// The steps that each process has driven, from the "steps/total" lines in its log.
+class Monitor {
+ public:
+  Monitor(const std::vector<EvaluationJob>& jobs, const std::vector<ProcessPlan>& plan)
+      : start_s_(monotonic_s()) {
+    for (std::size_t i = 0; i < jobs.size(); ++i) {
+      drives_.push_back({jobs[i], LineTail(plan[i].log), 0});
+    }
+  }
+
+  void tick() {
+    for (Drive& drive : drives_) {
+      for (const std::string& line : drive.log.read()) {
+        if (const auto steps = parse_step_count(line)) drive.steps = *steps;
+      }
+    }
+    const double now_s = monotonic_s();
+    if (display_.due(now_s)) display_.show({headline(now_s), details()}, now_s);
+  }
+
+ private:
+  struct Drive {
+    EvaluationJob job;
+    LineTail log;
+    std::int64_t steps;
+  };
+
+  std::string headline(double now_s) const {
+    std::int64_t done = 0, total = 0;
+    for (const Drive& drive : drives_) {
+      done += drive.steps;
+      total += drive.job.steps;
+    }
+    const double share = static_cast<double>(done) / static_cast<double>(total);
+    std::string text =
+        fmt::format("evaluation {} {:5.1f} %  {} of {} steps", progress_bar(share, 20),
+                    100.0 * share, grouped(done), grouped(total));
+    if (done > 0 && now_s > start_s_) {
+      const double rate = static_cast<double>(done) / (now_s - start_s_);
+      text += fmt::format("  {} steps/s  {} left", grouped(std::llround(rate)),
+                          duration_text(static_cast<double>(total - done) / rate));
+    }
+    return text;
+  }
+
+  std::string details() const {
+    std::string text;
+    for (const Drive& drive : drives_) {
+      if (drive.steps == 0) continue;
+      text += fmt::format(
+          "{}{} {}: {:.0f} %", text.empty() ? "" : ", ", drive.job.planner, drive.job.seed,
+          100.0 * static_cast<double>(drive.steps) / static_cast<double>(drive.job.steps));
+    }
+    return text.empty() ? "starting" : text;
+  }
+
+  double start_s_;
+  std::vector<Drive> drives_;
+  ProgressDisplay display_;
+};
+
+template <typename T>
+void refuse_repeated(std::vector<T> values, const char* what) {
+  std::sort(values.begin(), values.end());
+  const auto repeated = std::adjacent_find(values.begin(), values.end());
+  if (repeated != values.end()) throw Failure("{} {} is given twice", what, *repeated);
+}
+
+std::vector<EvaluationJob> jobs_of(const EvaluateOptions& options, const RunConfig& config) {
+  std::vector<std::string> planners = options.planners;
+  if (planners.empty()) {
+    for (const PlannerPair& pair : planner_pairs()) planners.emplace_back(pair.name);
+  }
+  const auto& seeds = options.seeds.empty() ? config.evaluation.seeds : options.seeds;
+  for (const std::string& planner : planners) planner_pair(planner);
+  refuse_repeated(planners, "planner");
+  refuse_repeated(seeds, "evaluation seed");
+  const std::int64_t steps = options.steps.value_or(config.evaluation.steps);
+  if (steps < 1) throw Failure("--steps {}: at least 1 is needed", steps);
+  return evaluation_jobs(planners, seeds, steps);
+}
+
+// Now rather than after the driving.
+void check_can_write(const std::filesystem::path& file) {
+  const std::filesystem::path parent = std::filesystem::absolute(file).parent_path();
+  if (access(parent.c_str(), W_OK) != 0 || std::filesystem::is_directory(file)) {
+    throw Failure("cannot write {}: {}", file.string(),
+                  std::filesystem::is_directory(file) ? "it is a directory" : std::strerror(errno));
+  }
+}
+
+}  // namespace
+
+void check_can_drive(const std::string& planner, const RunDirectory& directory,
+                     const RunConfig& config) {
+  const PlannerPair& pair = planner_pair(planner);
+  if (!pair.learned_mop && !pair.learned_bp) return;
+  const std::optional<Checkpoint> checkpoint = newest_checkpoint(directory);
+  if (!checkpoint) {
+    throw Failure(
+        "planner '{}' drives with learned weights, and {} has no checkpoint yet: wait, "
+        "or choose --planners rules,sumo",
+        planner, directory.root().string());
+  }
+  const std::uint64_t bp_begins = Schedule(config).first_round(Phase::kBp);
+  if (pair.learned_bp && checkpoint->rounds_done <= bp_begins) {
+    throw Failure(
+        "planner '{}' drives with the learned BP, and {} has trained the MoP only, for "
+        "{} rounds: wait, or choose --planners rules,rules+mop,sumo",
+        planner, directory.root().string(), checkpoint->rounds_done);
+  }
+}
+
+int evaluate(const EvaluateOptions& options) {
+  const RunDirectory directory = RunDirectory::open(options.run);
+  const RunConfig config = load_run_config(directory.config());
+  const std::vector<EvaluationJob> jobs = jobs_of(options, config);
+  for (const EvaluationJob& job : jobs) check_can_drive(job.planner, directory, config);
+  const int parallel =
+      options.jobs.value_or(std::max(1, static_cast<int>(std::thread::hardware_concurrency())));
+  if (parallel < 1) throw Failure("--jobs {}: at least 1 is needed", parallel);
+  if (!options.json.empty()) check_can_write(options.json);
+
+  std::vector<ProcessPlan> plan;
+  for (const EvaluationJob& job : jobs) {
+    plan.push_back(evaluation_process(job, directory, program_directory(), options.fcd));
+  }
+  Monitor monitor(jobs, plan);
+  const Ending ending = run_queue(plan, parallel, Limits{}, [&] { monitor.tick(); });
+  if (ending.signal != 0) {
+    fmt::print("stopped: no table\n");
+    return 128 + ending.signal;
+  }
+
+  std::vector<EvaluationResult> results;
+  for (const EvaluationJob& job : jobs) {
+    const std::filesystem::path file = evaluation_file(job, directory);
+    results.push_back(parse_evaluation(read_json(file), file.string()));
+  }
+  fmt::print("\n{}: {} steps for each planner and seed\n{}", directory.root().string(),
+             grouped(jobs.front().steps),
+             evaluation_table(results, config.simulation.step_s, config.run.seed));
+  if (!options.json.empty()) {
+    write_file(options.json, evaluation_json(results).dump(2) + "\n");
+  }
+  fmt::print("\nepisodes in {}; drive one again with corridor redrive\n",
+             directory.episodes().string());
+  return 0;
+}
+
+std::filesystem::path find_episode(const RunDirectory& directory, const std::string& episode) {
+  if (std::filesystem::is_regular_file(episode)) return episode;
+  const std::filesystem::path file = directory.episodes() / (episode + ".json");
+  if (std::filesystem::is_regular_file(file)) return file;
+  throw Failure("there is no episode '{}': give a file, or a name as in {}", episode,
+                directory.episodes().string());
+}
+
+void redrive(const std::filesystem::path& run, const std::string& episode) {
+  const RunDirectory directory = RunDirectory::open(run);
+  std::string program = program_directory() / "corridor-actor";
+  std::string root = directory.root(), file = find_episode(directory, episode);
+  std::string flag = "--redrive";
+  char* const argv[] = {program.data(), root.data(), flag.data(), file.data(), nullptr};
+  execv(program.c_str(), argv);
+  throw Failure("cannot start {}: {}; is the build complete?", program, std::strerror(errno));
+}
+
+}  // namespace corridor::cluster

@@ -1,0 +1,42 @@
+// `corridor evaluate` and `corridor redrive`.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "proto/run_directory.h"
+#include "proto/settings.h"
+
+namespace corridor::cluster {
+
+struct EvaluateOptions {
+  std::filesystem::path run;
+  std::vector<std::string> planners;  // empty: all
+  std::optional<std::int64_t> steps;  // for each planner and seed; else [evaluation] steps
+  std::vector<std::uint64_t> seeds;   // empty: [evaluation] seeds
+  std::optional<int> jobs;            // processes at a time; else the number of cores
+  std::filesystem::path json;         // empty: none
+  std::filesystem::path fcd;          // directory of SUMO's trajectories; empty: none
+};
+
+// Drives each planner on the test episodes of each seed and prints the table. Returns the exit
+// status: 0, or 128 + signal when stopped by one. Throws Failure for planners that there are not or
+// that this run cannot drive yet, and when a process fails.
+int evaluate(const EvaluateOptions& options);
+
+// Throws Failure when the run's newest checkpoint does not have what the planner drives with.
+void check_can_drive(const std::string& planner, const RunDirectory& directory,
+                     const RunConfig& config);
+
+// Drives a recorded episode again: becomes corridor-actor, whose status is 0 when the trajectory is
+// the recorded one. Returns only by throwing Failure.
+[[noreturn]] void redrive(const std::filesystem::path& run, const std::string& episode);
+
+// A file's path, or a name as in evaluation/episodes ("rules_1001_3"). Throws Failure when it is
+// neither.
+std::filesystem::path find_episode(const RunDirectory& directory, const std::string& episode);
+
+}  // namespace corridor::cluster

@@ -1,0 +1,54 @@
+// What corridor-actor wrote about its greedy episodes -> the paper's table, and the JSON for
+// others. Pure.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+namespace corridor::cluster {
+
+inline constexpr std::array kCollisionKinds = {"rear_ended", "rear_ending", "side_by_other",
+                                               "side_by_ego"};
+
+struct EpisodeResult {
+  std::int64_t steps = 0;
+  double bp_reward = 0.0;
+  std::int64_t collisions = 0;
+  std::int64_t lane_changes = 0;
+  std::int64_t hard_brakes = 0;
+  double distance_m = 0.0;
+  std::vector<std::int64_t> lane_steps;  // by lane, from the right
+};
+
+// One planner pair on the test episodes of one evaluation seed. Counts are totals over the steps.
+struct EvaluationResult {
+  std::string planner;
+  std::uint64_t seed = 0;
+  std::int64_t steps = 0;
+  std::int64_t episodes = 0;
+  double bp_reward_per_1000 = 0.0;
+  std::int64_t collisions = 0;
+  std::array<std::int64_t, kCollisionKinds.size()> collisions_by_kind{};
+  std::int64_t lane_changes = 0;
+  double mean_speed_kph = 0.0;
+  double distance_km = 0.0;
+  std::vector<EpisodeResult> per_episode;
+};
+
+// Throws Failure naming `name` (the file) when a field is missing or wrong, or when there is no
+// episode.
+EvaluationResult parse_evaluation(const nlohmann::json& json, const std::string& name);
+
+// A list with one object a result: all fields but the episodes.
+nlohmann::ordered_json evaluation_json(const std::vector<EvaluationResult>& results);
+
+// Sums per 1000 steps with 95 % intervals, one row a planner (its seeds together, planners in the
+// order in which they come), collisions by kind, figures per km, lane shares, and the paper's own
+// Table I for comparison. `step_s` is the simulation's, `seed` the bootstrap's.
+std::string evaluation_table(const std::vector<EvaluationResult>& results, double step_s,
+                             std::uint64_t seed);
+
+}  // namespace corridor::cluster

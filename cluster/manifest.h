@@ -1,0 +1,20 @@
+// manifest.json of a run: what made it.
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "proto/settings.h"
+
+namespace corridor::cluster {
+
+// 32 hex digits from the system's generator: who knows them belongs to the run.
+std::string draw_run_id();
+
+// run_id, seed, scenario, started (UTC), host, cpu, cores, and the versions of corridor, its git
+// commit, SUMO, LibTorch, BLAS and compiler. What is not known says "unknown".
+nlohmann::ordered_json describe_run(const std::string& run_id, const RunConfig& config,
+                                    const std::filesystem::path& scenario);
+
+}  // namespace corridor::cluster

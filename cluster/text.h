@@ -1,0 +1,15 @@
+// Numbers as people read them.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace corridor::cluster {
+
+// 1400000 -> "1,400,000".
+std::string grouped(std::int64_t number);
+
+// 67 -> "1 min 07 s"; 4000 -> "1 h 06 min". Rounded to whole seconds.
+std::string duration_text(double seconds);
+
+}  // namespace corridor::cluster

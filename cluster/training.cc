@@ -1,0 +1,169 @@
+#include "cluster/training.h"
+
+#include <csignal>
+#include <nlohmann/json.hpp>
+
+#include "cluster/checkpoint.h"
+#include "cluster/local.h"
+#include "cluster/manifest.h"
+#include "cluster/plan.h"
+#include "cluster/progress.h"
+#include "cluster/run_lock.h"
+#include "cluster/text.h"
+#include "proto/failure.h"
+#include "proto/program.h"
+#include "proto/run_config.h"
+#include "proto/run_directory.h"
+#include "proto/schedule.h"
+#include "scenarios/sumo_files.h"
+
+namespace corridor::cluster {
+namespace {
+
+// Removes the run directory again unless it is kept: a run that never began leaves nothing.
+class NewRun {
+ public:
+  explicit NewRun(const std::filesystem::path& root) : directory_(RunDirectory::create(root)) {}
+  ~NewRun() {
+    std::error_code ignored;
+    if (!kept_) std::filesystem::remove_all(directory_.root(), ignored);
+  }
+  NewRun(const NewRun&) = delete;
+  NewRun& operator=(const NewRun&) = delete;
+
+  const RunDirectory& directory() const { return directory_; }
+  void keep() { kept_ = true; }
+
+ private:
+  RunDirectory directory_;
+  bool kept_ = false;
+};
+
+// Metrics files -> what people see.
+class Monitor {
+ public:
+  Monitor(const RunConfig& config, const RunDirectory& directory, std::uint64_t rounds_done)
+      : progress_(Schedule(config), rounds_done, monotonic_s()),
+        learner_(directory.metrics(kLearner)) {
+    for (int i = 0; i < config.run.actors; ++i) {
+      actors_.emplace_back(directory.metrics(actor_name(i)));
+    }
+  }
+
+  void tick() {
+    const double now_s = monotonic_s();
+    for (const std::string& text : learner_.read()) {
+      if (const auto line = parse_metrics_line(text)) progress_.on_learner(*line, now_s);
+    }
+    for (LineTail& actor : actors_) {
+      for (const std::string& text : actor.read()) {
+        if (const auto line = parse_metrics_line(text)) progress_.on_actor(*line);
+      }
+    }
+    if (display_.due(now_s)) display_.show({progress_.headline(), progress_.details()}, now_s);
+  }
+
+ private:
+  TrainingProgress progress_;
+  LineTail learner_;
+  std::vector<LineTail> actors_;
+  ProgressDisplay display_;
+};
+
+// "MoP, round 24 of 80: 12,288 of 40,960 steps"
+std::string position(const Schedule& schedule, std::uint64_t rounds_done) {
+  const Phase phase = schedule.phase_of(rounds_done > 0 ? rounds_done - 1 : 0);
+  return fmt::format(
+      "{}, {} of {} rounds, {} of {} steps", phase_name(phase), rounds_done, schedule.rounds(),
+      grouped(static_cast<std::int64_t>(rounds_done) * schedule.steps_per_round()),
+      grouped(static_cast<std::int64_t>(schedule.rounds()) * schedule.steps_per_round()));
+}
+
+void print_what_comes_next(const RunDirectory& directory, const std::string& program) {
+  const std::string run = directory.root().string();
+  fmt::print(
+      "  checkpoint    {0}/checkpoints\n"
+      "  metrics       {0}/metrics\n"
+      "  logs          {0}/log\n"
+      "Next:\n"
+      "  {1} evaluate {0}\n"
+      "  {1} fingerprint {0}\n",
+      run, program);
+}
+
+std::uint64_t rounds_done(const RunDirectory& directory) {
+  const std::optional<Checkpoint> checkpoint = newest_checkpoint(directory);
+  return checkpoint ? checkpoint->rounds_done : 0;
+}
+
+int supervise(const RunConfig& config, const RunDirectory& directory, std::uint64_t rounds_before,
+              const std::string& program) {
+  const Schedule schedule(config);
+  const double start_s = monotonic_s();
+  Monitor monitor(config, directory, rounds_before);
+  const Ending ending = run_together(training_plan(config.run, directory, program_directory()),
+                                     kLearner, Limits{}, [&] { monitor.tick(); });
+  monitor.tick();
+
+  const std::uint64_t rounds = rounds_done(directory);
+  const std::string how_to_go_on =
+      fmt::format("resume with {} resume {}", program, directory.root().string());
+  if (ending.signal != 0) {
+    fmt::print("stopped at the checkpoint of {}; {}\n", position(schedule, rounds), how_to_go_on);
+    return 128 + ending.signal;
+  }
+  if (rounds < schedule.rounds()) {
+    throw Failure("the learner was told to stop by someone else, at the checkpoint of {}; {}",
+                  position(schedule, rounds), how_to_go_on);
+  }
+  fmt::print("training is complete after {}: {}\n", duration_text(monotonic_s() - start_s),
+             position(schedule, rounds));
+  print_what_comes_next(directory, program);
+  return 0;
+}
+
+}  // namespace
+
+int train(const TrainOptions& options, const std::string& program) {
+  std::vector<std::string> overrides;
+  if (options.actors) overrides.push_back(fmt::format("run.actors={}", *options.actors));
+  if (options.seed) overrides.push_back(fmt::format("run.seed={}", *options.seed));
+  overrides.insert(overrides.end(), options.settings.begin(), options.settings.end());
+  const RunConfig config = load_run_config(options.scenario, overrides);
+
+  NewRun run(options.run);
+  const RunDirectory& directory = run.directory();
+  const RunLock lock(directory);
+  scenarios::write_sumo_files(config, directory.network().parent_path());
+  write_file(directory.config(), to_toml(config));
+  write_file(directory.manifest(),
+             describe_run(draw_run_id(), config, options.scenario).dump(2) + "\n");
+  if (stop_requested()) return 128 + SIGINT;
+  run.keep();
+
+  fmt::print("{}: {} actors, seed {}; logs in {}\n", directory.root().string(), config.run.actors,
+             config.run.seed, (directory.root() / "log").string());
+  return supervise(config, directory, 0, program);
+}
+
+int resume(const std::filesystem::path& run, const std::string& program) {
+  const RunDirectory directory = RunDirectory::open(run);
+  const RunLock lock(directory);
+  const RunConfig config = load_run_config(directory.config());
+  const Schedule schedule(config);
+  const std::uint64_t rounds = rounds_done(directory);
+  if (rounds >= schedule.rounds()) {
+    fmt::print("{} is complete: {}; nothing to resume\n", run.string(), position(schedule, rounds));
+    print_what_comes_next(directory, program);
+    return 0;
+  }
+  const auto last = last_metrics_line(directory.metrics(kLearner));
+  const std::uint64_t reached = last ? std::max(last->round + 1, rounds) : rounds;
+  fmt::print("{}: {}: {}; {} steps after it are repeated\n", run.string(),
+             rounds > 0 ? "goes on from the checkpoint of" : "no checkpoint yet, begins anew",
+             position(schedule, rounds),
+             grouped(static_cast<std::int64_t>(reached - rounds) * schedule.steps_per_round()));
+  return supervise(config, directory, rounds, program);
+}
+
+}  // namespace corridor::cluster

@@ -1,0 +1,27 @@
+// `corridor train` and `corridor resume`.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace corridor::cluster {
+
+struct TrainOptions {
+  std::filesystem::path scenario;
+  std::filesystem::path run;
+  std::optional<int> actors;          // run.actors
+  std::optional<std::uint64_t> seed;  // run.seed
+  std::vector<std::string> settings;  // "table.key=value", applied last
+};
+
+// Both return the process's exit status: 0 when the training is complete, 128 + signal when it was
+// stopped by one. Both throw Failure when anything goes wrong; nothing is then left running, and
+// when training had not begun, no run directory is left. `program` is how people call this
+// program, for what comes next.
+int train(const TrainOptions& options, const std::string& program);
+int resume(const std::filesystem::path& run, const std::string& program);
+
+}  // namespace corridor::cluster

@@ -1,0 +1,63 @@
+// A Q-network in LibTorch: a multi-layer perceptron whose parameters are views of one flat buffer
+// and whose gradients are views of another, so that copies, checkpoints and Adam touch one array.
+// Its backward pass is written out: for networks and batches this small autograd costs as much as
+// the arithmetic. q_network.cc and td_update.cc are the only users of LibTorch.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "proto/transition.h"
+
+namespace at {
+class Tensor;
+}
+
+namespace corridor::learner {
+
+// Where LibTorch computes: "cpu" or "cuda" (config key run.device). Throws Failure when LibTorch
+// has no such device here.
+void check_device(const std::string& device);
+
+// Keeps LibTorch to the calling thread; call it first in main.
+void use_one_torch_thread();
+
+// Uniform in +-1/sqrt(fan-in), weights and biases alike, each a function of (seed, phase, index).
+std::vector<float> initial_parameters(const NetworkShape& shape, std::uint64_t seed, Phase phase);
+
+class QNetwork {
+ public:
+  // All parameters 0. Throws Failure as check_device does.
+  QNetwork(const NetworkShape& shape, const std::string& device);
+  ~QNetwork();
+  QNetwork(const QNetwork&) = delete;
+  QNetwork& operator=(const QNetwork&) = delete;
+
+  const NetworkShape& shape() const;
+
+  // In NetworkShape's order. One memcpy on the CPU.
+  std::vector<float> parameters() const;
+  void set_parameters(std::span<const float> values);
+
+  // [batch, actions], row-major, for observations [batch, observations].
+  std::vector<float> forward(std::span<const float> observations, int batch) const;
+
+  // For td_update.cc. Observations are [batch, observations] on the network's device, Q-values
+  // [batch, actions]. `layer_inputs` receives what backward needs; no autograd is involved.
+  at::Tensor forward(const at::Tensor& observations,
+                     std::vector<at::Tensor>* layer_inputs = nullptr) const;
+  // Sets gradient_tensor() to d loss / d parameters, given d loss / d Q-values of that forward
+  // pass.
+  void backward(const std::vector<at::Tensor>& layer_inputs, const at::Tensor& q_gradient);
+  at::Tensor& parameter_tensor();       // [parameters]
+  const at::Tensor& gradient_tensor();  // [parameters]
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace corridor::learner

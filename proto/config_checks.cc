@@ -1,0 +1,124 @@
+#include "proto/config_checks.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "proto/failure.h"
+#include "proto/toml_text.h"
+
+namespace corridor {
+namespace {
+
+// What fits one field of a message (proto/wire.capnp).
+constexpr std::size_t kParametersMax = 16 * 1024 * 1024;
+
+// Left free at the road's ends, beyond the traffic's window.
+constexpr double kRoadEnds_m = 200.0;
+
+template <typename... Args>
+void require(bool condition, fmt::format_string<Args...> text, Args&&... args) {
+  if (!condition) throw Failure(text, std::forward<Args>(args)...);
+}
+
+bool is_multiple(double value, double unit) {
+  const double ratio = value / unit;
+  return std::abs(ratio - std::round(ratio)) < 1e-6;
+}
+
+template <typename T>
+void require_ordered(const char* low_key, T low, const char* high_key, T high) {
+  require(low <= high, "{} = {} is above {} = {}", low_key, low, high_key, high);
+}
+
+template <typename T>
+bool is_ascending(const std::vector<T>& values) {
+  return std::adjacent_find(values.begin(), values.end(), std::greater_equal<T>()) == values.end();
+}
+
+void check_road(const RunConfig& config) {
+  const RoadSettings& road = config.road;
+  const SimulationSettings& simulation = config.simulation;
+  require(is_multiple(road.lane_width_m, simulation.lateral_resolution_m),
+          "road.lane_width_m = {} is no multiple of simulation.lateral_resolution_m = {}",
+          road.lane_width_m, simulation.lateral_resolution_m);
+  require(config.ego.width_m < road.lane_width_m,
+          "ego.width_m = {} must be below road.lane_width_m = {}", config.ego.width_m,
+          road.lane_width_m);
+  const double needed_m = simulation.episode_steps * simulation.step_s * road.speed_limit_mps +
+                          2 * config.traffic.window_m + kRoadEnds_m;
+  require(road.length_m >= needed_m,
+          "road.length_m = {} is too short for an episode at the speed limit: {} are needed, or "
+          "fewer simulation.episode_steps",
+          road.length_m, std::ceil(needed_m));
+}
+
+void check_traffic(const TrafficSettings& traffic) {
+  require_ordered("traffic.vehicles_min", traffic.vehicles_min, "traffic.vehicles_max",
+                  traffic.vehicles_max);
+  require_ordered("traffic.speed_factor_min", traffic.speed_factor_min, "traffic.speed_factor_mean",
+                  traffic.speed_factor_mean);
+  require_ordered("traffic.speed_factor_mean", traffic.speed_factor_mean,
+                  "traffic.speed_factor_max", traffic.speed_factor_max);
+  require(traffic.slow_share + traffic.truck_share <= 1.0,
+          "traffic.slow_share = {} and traffic.truck_share = {} are more than all",  //
+          traffic.slow_share, traffic.truck_share);
+}
+
+void check_planners(const RunConfig& config) {
+  require(config.planner.corridors_per_lane % 2 == 1,
+          "planner.corridors_per_lane = {} must be odd, so that there is a middle",
+          config.planner.corridors_per_lane);
+  require(is_ascending(config.planner.speed_changes_mps),
+          "planner.speed_changes_mps = {} must be ascending, without repetition",
+          toml_of(config.planner.speed_changes_mps));
+  require_ordered("mop_reward.near_low", config.mop_reward.near_low, "mop_reward.near_high",
+                  config.mop_reward.near_high);
+  require(config.bp_reward.thresholds_mps.size() == static_cast<std::size_t>(config.road.lanes),
+          "bp_reward.thresholds_mps has {} values where road.lanes = {}: give one a lane",
+          config.bp_reward.thresholds_mps.size(), config.road.lanes);
+  require_ordered("random_bp.hold_steps_min", config.random_bp.hold_steps_min,
+                  "random_bp.hold_steps_max", config.random_bp.hold_steps_max);
+}
+
+void check_dqn(const RunConfig& config, Phase phase) {
+  const DqnSettings& dqn = config.phase(phase);
+  const std::string table = phase == Phase::kMop ? "mop" : "bp";
+  require(dqn.capacity >= dqn.minimum_size && dqn.minimum_size >= dqn.batch_size,
+          "{0}.capacity = {1}, {0}.minimum_size = {2}, {0}.batch_size = {3} must not ascend", table,
+          dqn.capacity, dqn.minimum_size, dqn.batch_size);
+  require(dqn.learning_rate_end <= dqn.learning_rate,
+          "{0}.learning_rate_end = {1} is above {0}.learning_rate = {2}", table,
+          dqn.learning_rate_end, dqn.learning_rate);
+  require(dqn.epsilon_end <= dqn.epsilon, "{0}.epsilon_end = {1} is above {0}.epsilon = {2}", table,
+          dqn.epsilon_end, dqn.epsilon);
+  const std::size_t parameters = config.network(phase).parameters();
+  require(parameters <= kParametersMax,
+          "{}.hidden = {} makes a network of {} parameters: at most {} fit a message", table,
+          toml_of(dqn.hidden), parameters, kParametersMax);
+}
+
+void check_run(const RunConfig& config) {
+  const auto& seeds = config.evaluation.seeds;
+  require(std::set<std::uint64_t>(seeds.begin(), seeds.end()).size() == seeds.size(),
+          "evaluation.seeds = {} has one twice", toml_of(seeds));
+  require(config.run.replay_port != config.run.learner_port,
+          "run.replay_port and run.learner_port are both {}", config.run.replay_port);
+}
+
+}  // namespace
+
+void check_config(const RunConfig& config, const std::string& name) {
+  try {
+    check_road(config);
+    check_traffic(config.traffic);
+    check_planners(config);
+    check_dqn(config, Phase::kMop);
+    check_dqn(config, Phase::kBp);
+    check_run(config);
+  } catch (const Failure& failure) {
+    throw Failure("{}: {}", name, failure.what());
+  }
+}
+
+}  // namespace corridor

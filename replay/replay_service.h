@@ -1,0 +1,85 @@
+// The replay server without its sockets: what each request does and what answers it
+// (proto/wire.capnp). A function of the requests and, for each client, of their order: how the
+// actors' requests fall between the learner's changes no batch.
+//
+// A block is open from its OpenBlock's answer to the next OpenBlock or Save. At the first round of
+// a phase the store starts afresh, with that phase's settings and row layout. What is malformed or
+// impossible is refused before it changes anything. One thread.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "proto/endpoint.h"
+#include "proto/messages.h"
+#include "proto/schedule.h"
+#include "proto/settings.h"
+#include "replay/admission.h"
+#include "replay/limiter.h"
+#include "replay/store.h"
+
+namespace corridor::replay {
+
+// The client cannot go on with such a request; one line for people.
+struct Refused {
+  std::string text;
+};
+// The request, an OpenBlock, is answered by a later `try_open`.
+struct Waiting {};
+
+using Outcome = std::variant<ReplayReply, Refused, Waiting>;
+
+class ReplayService {
+ public:
+  // At the start of a run.
+  explicit ReplayService(const RunConfig& config);
+
+  // One request of `client`. Requests of one client come in the order in which it sent them.
+  Outcome handle(ClientId client, ReplayRequest request);
+
+  // Opens the block that the learner waits for, once every actor's chunk of the round is there:
+  // the answer to the newest OpenBlock. Nothing when none waits or a chunk is missing. To be called
+  // after every `handle`.
+  std::optional<Opened> try_open();
+
+  // The actors that the waiting OpenBlock waits for, ascending; empty when none waits.
+  std::vector<std::uint32_t> awaited() const;
+  // Chunks of rounds < next_round() are in the store.
+  std::uint64_t next_round() const { return admission_.next_round(); }
+
+  // Named values (proto/metrics.h) as of the last block; equal in equal runs.
+  std::vector<std::pair<std::string, double>> metrics() const;
+
+  // Writes replay.safetensors into the directory: all of rounds < next_round(), nothing parked.
+  // Equal states give equal bytes. A service that loads it goes on as this one does. Both throw
+  // Failure naming the file.
+  void save(const std::filesystem::path& directory) const;
+  void load(const std::filesystem::path& directory);
+
+ private:
+  Outcome answer(ClientId client, const Join& request);
+  Outcome answer(ClientId client, Insert&& request);
+  Outcome answer(ClientId client, const OpenBlock& request);
+  Outcome answer(ClientId client, const Step& request);
+  Outcome answer(ClientId client, const Save& request);
+
+  RowLayout layout(Phase phase) const { return {config_.shape(phase).observations}; }
+  // An empty store and the limiter of the phase.
+  void begin(Phase phase, std::uint64_t first_key);
+
+  RunConfig config_;
+  Schedule schedule_;
+  Admission admission_;
+  Phase phase_ = Phase::kMop;  // of the store
+  Store store_;
+  Limiter limiter_;
+  bool waits_ = false;  // an OpenBlock for next_round()
+  bool open_ = false;   // block next_round() - 1 is
+};
+
+}  // namespace corridor::replay

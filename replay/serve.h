@@ -1,0 +1,21 @@
+// The replay server's loop: a request from the socket, through the service, and its answer back.
+#pragma once
+
+#include <functional>
+
+#include "proto/endpoint.h"
+#include "proto/metrics.h"
+#include "proto/settings.h"
+#include "replay/replay_service.h"
+
+namespace corridor::replay {
+
+// Serves until `stop` says so, which is asked at least ten times a second. Logs whom it waits for
+// when a block stays unopened for long. Every 32 blocks it writes the service's metrics, and how
+// long it has waited for actors (a block is wanted, chunks are missing), for the learner (anything
+// else), and was busy. Requests that make no sense are refused. Throws Failure when the metrics
+// cannot be written.
+void serve(Server& server, ReplayService& service, MetricsWriter& metrics, const RunConfig& config,
+           const std::function<bool()>& stop);
+
+}  // namespace corridor::replay

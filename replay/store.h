@@ -1,0 +1,83 @@
+// Transitions of one phase and their priorities: a ring of rows with proportional prioritized
+// sampling (Schaul et al. 2016, section 3.3).
+//
+// A row's key is its insert index, counted on through both phases and never reused; its slot is key
+// mod capacity. So a key says by itself whether its row has been replaced, and a late priority
+// never reaches the slot's next tenant.
+//
+// Priorities come in as |TD error|; the exponent alpha is applied here and nowhere else:
+// leaf = (|TD error| + offset)^alpha, > 0 since the offset is. Cost: one copy of a row in, one out,
+// and the tree's. One thread.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "proto/messages.h"
+#include "proto/settings.h"
+#include "proto/tensor_file.h"
+#include "proto/transition.h"
+#include "replay/sum_tree.h"
+
+namespace corridor::replay {
+
+// Whether all are |TD errors|: finite and >= 0.
+bool are_priorities(std::span<const float> values);
+
+class Store {
+ public:
+  // Empty. Its draws are random_unit(seed, kReplaySampling, {phase, draw}) with draw = 0, 1, ...
+  Store(const DqnSettings& settings, RowLayout layout, std::uint64_t seed, Phase phase,
+        std::uint64_t first_key);
+
+  std::uint64_t size() const { return next_key_ - oldest_key(); }
+  std::uint64_t inserted() const { return next_key_ - first_key_; }
+  std::uint64_t sampled() const { return sampled_; }
+  std::uint64_t stale_priorities() const { return stale_priorities_; }
+  std::uint64_t next_key() const { return next_key_; }
+  RowLayout layout() const { return layout_; }
+
+  // Appends whole rows, one priority a row (are_priorities); the oldest rows give way.
+  void insert(std::span<const float> rows, std::span<const float> priorities);
+
+  // Sets the priorities of rows drawn before, keys < next_key(), priorities are_priorities. Those
+  // of replaced rows are dropped and counted; of a key named twice the last one stays.
+  void update(std::span<const std::uint64_t> keys, std::span<const float> priorities);
+
+  // Draws `count` rows, one from each of `count` equal strata of the priorities' sum, and weighs
+  // them by (size * probability)^-importance_exponent, divided by the batch's largest weight.
+  // size() >= 1 unless count is 0; importance_exponent finite and >= 0.
+  Batch sample(std::uint32_t count, double importance_exponent);
+
+  // Everything but what the constructor is given: "rows" [size, stride] and "leaves" [size] from
+  // the oldest key on, "first_key", "next_key", "sampled", "stale_priorities".
+  void save(TensorFile& file) const;
+  // Into an empty store. Throws Failure naming the file when its numbers do not fit together.
+  void load(const TensorFile& file, const std::string& name);
+
+ private:
+  std::uint64_t oldest_key() const;
+  double leaf(float priority) const;
+
+  std::size_t capacity_;
+  double priority_exponent_;
+  double priority_offset_;
+  RowLayout layout_;
+  std::uint64_t seed_;
+  Phase phase_;
+
+  std::uint64_t first_key_;
+  std::uint64_t next_key_;
+  std::uint64_t sampled_ = 0;
+  std::uint64_t stale_priorities_ = 0;
+  std::vector<float> rows_;  // [slot, stride]
+  SumTree tree_;
+
+  // Scratch of one call.
+  std::vector<std::uint64_t> slots_;
+  std::vector<double> numbers_;
+};
+
+}  // namespace corridor::replay

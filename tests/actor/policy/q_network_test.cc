@@ -1,0 +1,77 @@
+#include "actor/policy/q_network.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "learner/q_network.h"
+#include "proto/random.h"
+
+namespace corridor::policy {
+namespace {
+
+std::vector<float> random_floats(std::size_t count, std::uint64_t stream, double scale) {
+  std::vector<float> values(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    values[i] = static_cast<float>(
+        scale * (2.0 * random_unit(stream, Purpose::kInitialWeights, {i}) - 1.0));
+  }
+  return values;
+}
+
+TEST(QNetwork, ComputesAHandWorkedExample) {
+  // 2 inputs, 2 hidden, 2 actions: h = relu([x0 - x1 + 1, -x0]), q = [2 h0 + h1, -h0 + 3] + 0.
+  QNetwork network({2, {2}, 2, false}, {1, -1, -1, 0, 1, 0, 2, 1, -1, 0, 0, 3});
+  const std::vector<float> observation = {3, 1};
+  const auto q = network.q_values(observation);
+  ASSERT_EQ(q.size(), 2u);
+  EXPECT_FLOAT_EQ(q[0], 6.0f);
+  EXPECT_FLOAT_EQ(q[1], 0.0f);
+  EXPECT_EQ(network.greedy(observation), 0);
+}
+
+TEST(QNetwork, TakesTheLowestOfEqualActions) {
+  QNetwork network({1, {1}, 3, false}, std::vector<float>(1 + 1 + 3 + 3, 0.0f));
+  EXPECT_EQ(network.greedy(std::vector<float>{1.0f}), 0);
+}
+
+class AgainstLibTorch : public testing::TestWithParam<NetworkShape> {};
+
+TEST_P(AgainstLibTorch, AgreesToRounding) {
+  const NetworkShape shape = GetParam();
+  const auto parameters = random_floats(shape.parameters(), 1, 0.3);
+  QNetwork network(shape, parameters);
+  learner::QNetwork reference(shape, "cpu");
+  reference.set_parameters(parameters);
+  constexpr int kBatch = 64;
+  const auto inputs = static_cast<std::size_t>(shape.observations);
+  const auto observations = random_floats(inputs * kBatch, 2, 1.0);
+  const std::vector<float> expected = reference.forward(observations, kBatch);
+  for (std::size_t i = 0; i < kBatch; ++i) {
+    const auto q = network.q_values({observations.data() + i * inputs, inputs});
+    for (std::size_t a = 0; a < q.size(); ++a) {
+      EXPECT_NEAR(q[a], expected[i * q.size() + a], 2e-6) << "row " << i << " action " << a;
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Shapes, AgainstLibTorch,
+                         testing::Values(NetworkShape{28, {64, 64}, 9, false},
+                                         NetworkShape{24, {64, 64}, 3, true},
+                                         NetworkShape{40, {128, 96, 33}, 15, true},
+                                         NetworkShape{3, {5}, 2, false}));
+
+TEST(TdErrors, AreThoseOfTheDefinition) {
+  // One input, Q(x) = [x, 2x] for x >= 0.
+  QNetwork network({1, {1}, 2, false}, {1, 0, 1, 2, 0, 0});
+  // observation, next, action, return, discount
+  const std::vector<float> rows = {1, 3, 0, 0.5f, 0.9f,   // |0.5 + 0.9 * 6 - 1|
+                                   2, 0, 1, 1.0f, 0.0f};  // |1 - 4|
+  const auto errors = td_errors(rows, network);
+  ASSERT_EQ(errors.size(), 2u);
+  EXPECT_NEAR(errors[0], 4.9f, 1e-6);
+  EXPECT_NEAR(errors[1], 3.0f, 1e-6);
+}
+
+}  // namespace
+}  // namespace corridor::policy

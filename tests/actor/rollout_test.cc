@@ -1,0 +1,133 @@
+#include "actor/rollout.h"
+
+#include <gtest/gtest.h>
+
+#include "proto/failure.h"
+#include "proto/random.h"
+#include "tests/support/fake_world.h"
+
+namespace corridor::actor {
+namespace {
+
+using testing_support::FakeWorld;
+
+// Short rounds and episodes, so that a few rounds see ends, cut-offs and open episodes.
+RunConfig small_config() {
+  RunConfig config;
+  config.simulation.episode_steps = 70;
+  config.schedule.steps_per_round = 40;
+  config.schedule.selection_episodes = 3;
+  config.run.actors = 2;
+  for (auto& dqn : config.dqn) {
+    dqn.steps = 20 * 80;
+    dqn.epsilon_steps = 400;
+    dqn.exploration_hold_max = 5;
+  }
+  return config;
+}
+
+std::vector<float> parameters(const NetworkShape& shape, std::uint64_t stream) {
+  std::vector<float> values(shape.parameters());
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    values[i] = static_cast<float>(random_unit(stream, Purpose::kInitialWeights, {i}) - 0.5) * 0.4f;
+  }
+  return values;
+}
+
+Weights weights_of(const RunConfig& config, std::uint64_t version) {
+  return {version, parameters(config.network(Phase::kMop), version),
+          parameters(config.network(Phase::kBp), version + 1000)};
+}
+
+class InEachPhase : public testing::TestWithParam<Phase> {
+ protected:
+  RunConfig config = small_config();
+  std::uint64_t first = Schedule(config).first_round(GetParam());
+};
+
+TEST_P(InEachPhase, GivesTheSameChunksForTheSameRounds) {
+  FakeWorld world_a(config), world_b(config);
+  PhaseRollout a(config, 1, world_a, first, {});
+  PhaseRollout b(config, 1, world_b, first, {});
+  for (std::uint64_t round = first; round < first + 6; ++round) {
+    EXPECT_EQ(a.drive_round(weights_of(config, round)), b.drive_round(weights_of(config, round)));
+  }
+}
+
+TEST_P(InEachPhase, ActorsDriveDifferentEpisodes) {
+  FakeWorld world_a(config), world_b(config);
+  PhaseRollout a(config, 0, world_a, first, {});
+  PhaseRollout b(config, 1, world_b, first, {});
+  EXPECT_NE(a.drive_round(weights_of(config, 0)).rows, b.drive_round(weights_of(config, 0)).rows);
+}
+
+TEST_P(InEachPhase, GoesOnBitForBitFromTheOpenEpisodeOfAnyRound) {
+  FakeWorld world(config);
+  PhaseRollout uninterrupted(config, 1, world, first, {});
+  std::vector<Insert> chunks;
+  for (std::uint64_t round = first; round < first + 8; ++round) {
+    chunks.push_back(uninterrupted.drive_round(weights_of(config, round)));
+  }
+  int resumed_inside_an_episode = 0;
+  for (std::size_t done = 1; done < chunks.size(); ++done) {
+    FakeWorld fresh_world(config);
+    const OpenEpisode& open = chunks[done - 1].open;
+    resumed_inside_an_episode += !open.actions.empty();
+    PhaseRollout resumed(config, 1, fresh_world, first + done, open);
+    EXPECT_EQ(resumed.drive_round(weights_of(config, first + done)), chunks[done]) << done;
+  }
+  EXPECT_GE(resumed_inside_an_episode, 4);
+}
+
+TEST_P(InEachPhase, SelectionIsGreedySharedOutAndCutsTheOpenEpisodeOff) {
+  FakeWorld world(config);
+  PhaseRollout rollout(config, 0, world, first, {});
+  const Insert before = rollout.drive_round(weights_of(config, 0));
+  const SelectionOutcome outcome = rollout.select(weights_of(config, 1));
+  EXPECT_EQ(outcome.round, first + 1);
+  EXPECT_EQ(outcome.episodes, 2u);  // episodes 0 and 2 of 3
+  EXPECT_GT(outcome.steps, 0u);
+  EXPECT_EQ(outcome, rollout.select(weights_of(config, 1)));
+  const Insert after = rollout.drive_round(weights_of(config, 1));
+  EXPECT_GT(after.open.episode, before.open.episode);
+
+  FakeWorld fresh_world(config);
+  PhaseRollout resumed(config, 0, fresh_world, first + 1, before.open);
+  resumed.select(weights_of(config, 1));
+  EXPECT_EQ(resumed.drive_round(weights_of(config, 1)), after);
+}
+
+TEST_P(InEachPhase, EveryRowIsFiniteWithAPriorityOfItsOwn) {
+  FakeWorld world(config);
+  PhaseRollout rollout(config, 0, world, first, {});
+  const Insert chunk = rollout.drive_round(weights_of(config, 0));
+  const RowLayout layout{config.shape(GetParam()).observations};
+  ASSERT_EQ(chunk.rows.size(), chunk.priorities.size() * layout.stride());
+  EXPECT_GE(chunk.priorities.size(), 30u);
+  for (const float value : chunk.rows) ASSERT_TRUE(std::isfinite(value));
+  for (const float value : chunk.priorities) ASSERT_GE(value, 0.0f);
+}
+
+INSTANTIATE_TEST_SUITE_P(Phases, InEachPhase, testing::Values(Phase::kMop, Phase::kBp),
+                         [](const auto& parameter) {
+                           return std::string(phase_name(parameter.param));
+                         });
+
+TEST(PhaseRollout, RefusesAnEpisodeLongerThanItsPhase) {
+  const RunConfig config = small_config();
+  FakeWorld world(config);
+  EXPECT_THROW(PhaseRollout(config, 0, world, 1, {0, std::vector<std::uint8_t>(41, 0)}), Failure);
+}
+
+TEST(PhaseRollout, RefusesActionsUnderCommandsThatTheRandomBpDidNotGive) {
+  const RunConfig config = small_config();
+  FakeWorld world(config, 0);
+  std::vector<std::uint8_t> actions;
+  for (int i = 0; i < 40; ++i) {
+    actions.push_back(driving::pack(i % 2 ? driving::Command::kLeft : driving::Command::kRight, 4));
+  }
+  EXPECT_THROW(PhaseRollout(config, 0, world, 1, {0, actions}), Failure);
+}
+
+}  // namespace
+}  // namespace corridor::actor

@@ -1,0 +1,186 @@
+#include "cluster/progress.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "tests/support/temporary_directory.h"
+
+namespace corridor::cluster {
+namespace {
+
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+
+TEST(MetricsLine, IsReadWithItsPlaceAndAllItsNumbers) {
+  const auto line = parse_metrics_line(
+      R"({"phase":"BP","round":7,"step":3584,"time_s":1.25,"charts/SPS":7000,"eval/x":null})");
+  ASSERT_TRUE(line);
+  EXPECT_EQ(line->phase, "BP");
+  EXPECT_EQ(line->round, 7u);
+  EXPECT_EQ(line->step, 3584);
+  EXPECT_EQ(line->values, (std::map<std::string, double, std::less<>>{{"time_s", 1.25},
+                                                                      {"charts/SPS", 7000.0}}));
+}
+
+TEST(MetricsLine, IsNothingWhenTornOrForeign) {
+  for (const char* text :
+       {"", "{", R"({"phase":"BP","round":7,"step":35)", "[1,2]", "null", "7",
+        R"({"phase":"BP","round":-1,"step":0})", R"({"phase":3,"round":1,"step":0})",
+        R"({"round":1,"step":0})", R"({"phase":"BP","round":1.5,"step":0})", "\xff\xfe"}) {
+    EXPECT_FALSE(parse_metrics_line(text)) << text;
+  }
+}
+
+TEST(StepCount, IsReadFromLinesOfThatFormOnly) {
+  EXPECT_EQ(parse_step_count("1200/40000"), 1200);
+  for (const char* text : {"", "/", "12", "12/", "/40", "12/40 ", "a 12/40", "12/40/7"}) {
+    EXPECT_FALSE(parse_step_count(text)) << text;
+  }
+}
+
+class Files : public testing::Test {
+ protected:
+  void append(const std::string& text) { std::ofstream(file_, std::ios::app) << text; }
+
+  testing_support::TemporaryDirectory temporary_;
+  std::filesystem::path file_ = temporary_.path() / "a.jsonl";
+};
+
+TEST_F(Files, ATailGivesEachLineOnceAndATornOneWhenItIsWhole) {
+  LineTail tail(file_);
+  EXPECT_THAT(tail.read(), IsEmpty());
+  append("one\ntw");
+  EXPECT_THAT(tail.read(), ElementsAre("one"));
+  EXPECT_THAT(tail.read(), IsEmpty());
+  append("o\nthree\n");
+  EXPECT_THAT(tail.read(), ElementsAre("two", "three"));
+}
+
+TEST_F(Files, ATailLeavesOutWhatWasThereBeforeIt) {
+  append("old\n");
+  LineTail tail(file_);
+  append("new\n");
+  EXPECT_THAT(tail.read(), ElementsAre("new"));
+}
+
+TEST_F(Files, ATailBeginsAgainWhenTheFileIsWrittenAnew) {
+  append("a long line\n");
+  LineTail tail(file_);
+  std::ofstream(file_) << "x\n";
+  EXPECT_THAT(tail.read(), ElementsAre("x"));
+}
+
+TEST_F(Files, TheLastWholeMetricsLineIsFoundBehindATornOne) {
+  EXPECT_FALSE(last_metrics_line(file_));
+  for (int round = 0; round < 2000; ++round) {
+    append("{\"phase\":\"MoP\",\"round\":" + std::to_string(round) + ",\"step\":1}\n");
+  }
+  append("{\"phase\":\"MoP\",\"rou");
+  EXPECT_EQ(last_metrics_line(file_)->round, 1999u);
+}
+
+// 10 rounds of MoP and 10 of BP, 2 actors x 100 steps each.
+RunConfig config() {
+  RunConfig config;
+  config.run.actors = 2;
+  config.schedule.steps_per_round = 100;
+  config.dqn[0].steps = 2000;
+  config.dqn[1].steps = 2000;
+  return config;
+}
+
+class Progress : public testing::Test {
+ protected:
+  static MetricsLine line(const char* phase, std::uint64_t round,
+                          std::map<std::string, double, std::less<>> values = {}) {
+    return {phase, round, 0, std::move(values)};
+  }
+  TrainingProgress progress_{Schedule(config()), 0, 0.0};
+};
+
+TEST_F(Progress, CountsStepsOverBothPhases) {
+  EXPECT_EQ(progress_.steps_total(), 4000);
+  EXPECT_EQ(progress_.steps_done(), 0);
+  progress_.on_learner(line("MoP", 4), 1.0);
+  EXPECT_EQ(progress_.steps_done(), 1000);
+  progress_.on_learner(line("BP", 19), 3.0);
+  EXPECT_EQ(progress_.steps_done(), 4000);
+}
+
+TEST_F(Progress, ShowsPhaseShareSpeedAndTimeLeft) {
+  progress_.on_learner(line("MoP", 4), 2.0);
+  EXPECT_EQ(progress_.headline(),
+            "MoP [#####...............]  25.0 %  1,000 of 4,000 steps  500 steps/s  6 s left");
+}
+
+TEST_F(Progress, KnowsNoSpeedBeforeTheFirstRound) {
+  EXPECT_EQ(progress_.headline(), "MoP [....................]   0.0 %  0 of 4,000 steps");
+  EXPECT_EQ(progress_.details(), "starting");
+}
+
+TEST_F(Progress, TakesTheSpeedFromTheLastHalfMinute) {
+  progress_.on_learner(line("MoP", 0), 100.0);  // a slow start: 2 steps/s
+  progress_.on_learner(line("MoP", 1), 131.0);
+  progress_.on_learner(line("MoP", 9), 132.0);
+  progress_.on_learner(line("BP", 14), 150.0);
+  // From (100 s, 200 steps) on would be 56; what counts begins at (131 s, 400 steps).
+  EXPECT_NEAR(progress_.steps_per_s(), 2600.0 / 19.0, 1e-9);
+}
+
+TEST_F(Progress, AResumedTrainingBeginsWhereItsCheckpointIs) {
+  TrainingProgress resumed(Schedule(config()), 12, 50.0);
+  EXPECT_EQ(resumed.steps_done(), 2400);
+  EXPECT_THAT(resumed.headline(), HasSubstr("BP  [############........]  60.0 %"));
+  resumed.on_learner(line("BP", 12), 51.0);
+  EXPECT_NEAR(resumed.steps_per_s(), 200.0, 1e-9);
+}
+
+TEST_F(Progress, AveragesOverTheActors) {
+  progress_.on_actor(line("MoP", 0, {{"charts/reward_per_1000", 500.0},
+                                     {"charts/collisions_per_1000", 2.0}}));
+  progress_.on_actor(line("MoP", 0, {{"charts/reward_per_1000", 700.0},
+                                     {"charts/collisions_per_1000", 1.0}}));
+  EXPECT_THAT(progress_.details(), HasSubstr("reward 600, collisions 1.5 per 1000 steps"));
+}
+
+TEST_F(Progress, ForgetsTheFiguresOfThePhaseBefore) {
+  progress_.on_actor(line("MoP", 9, {{"charts/reward_per_1000", 500.0}}));
+  progress_.on_learner(line("BP", 10), 1.0);
+  progress_.on_actor(line("MoP", 9, {{"charts/reward_per_1000", 500.0}}));
+  EXPECT_THAT(progress_.details(), Not(HasSubstr("reward")));
+}
+
+TEST_F(Progress, NamesTheSideThatTheOtherWaitsFor) {
+  const auto details = [&](double for_actors, double for_weights, double for_replay) {
+    TrainingProgress progress(Schedule(config()), 0, 0.0);
+    progress.on_learner(line("MoP", 0, {{"time/wait_for_actors", for_actors},
+                                        {"time/wait_for_replay", for_replay},
+                                        {"replay/samples_per_insert", 31.96}}),
+                        1.0);
+    progress.on_actor(line("MoP", 0, {{"time/wait_for_weights", for_weights},
+                                      {"time/wait_for_replay", 0.01}}));
+    return progress.details();
+  };
+  EXPECT_EQ(details(0.4, 0.03, 0.02),
+            "32.0 samples per insert; learner waits 40 % for actors; actors wait 3 % for weights: "
+            "the actors are the bottleneck");
+  EXPECT_THAT(details(0.03, 0.4, 0.02), HasSubstr("the learner is the bottleneck"));
+  EXPECT_THAT(details(0.03, 0.04, 0.3),
+              AllOf(HasSubstr("the learner waits 30 %, actors 1 %"),
+                    HasSubstr("the replay server is the bottleneck")));
+  EXPECT_THAT(details(0.03, 0.04, 0.02), HasSubstr("balanced"));
+}
+
+TEST(ProgressBar, FillsFromTheLeftAndNeverOverflows) {
+  EXPECT_EQ(progress_bar(0.0, 4), "[....]");
+  EXPECT_EQ(progress_bar(0.5, 4), "[##..]");
+  EXPECT_EQ(progress_bar(1.7, 4), "[####]");
+}
+
+}  // namespace
+}  // namespace corridor::cluster

@@ -1,0 +1,191 @@
+// What users and the world do wrong: one clear line, a non-zero exit, nothing left running.
+#include <netinet/in.h>
+#include <sys/socket.h>
+
+#include <csignal>
+#include <thread>
+
+#include "tests/e2e/run_support.h"
+
+namespace corridor::e2e {
+namespace {
+
+namespace fs = std::filesystem;
+
+// The command fails by itself, says each of `hints` in its last line, and leaves nothing.
+void expect_failure(const std::vector<std::string>& command, const std::vector<std::string>& hints,
+                    const std::map<std::string, std::string>& environment = {}) {
+  const CommandResult result = run_command(command, kDeadline_s, environment);
+  EXPECT_GT(result.status, 0) << result.output;
+  EXPECT_LT(result.status, 128) << result.output;
+  const std::size_t error = result.output.rfind("error: ");
+  ASSERT_NE(error, std::string::npos) << result.output;
+  const std::string text = result.output.substr(error);
+  EXPECT_EQ(lines_in(text), 1) << result.output;
+  for (const auto& hint : hints) EXPECT_NE(text.find(hint), std::string::npos) << result.output;
+}
+
+class BadInput : public testing::Test {
+ protected:
+  ~BadInput() override { expect_nothing_left(temporary.path()); }
+
+  fs::path scenario(const std::string& text) const {
+    const fs::path file = temporary.path() / "scenario.toml";
+    std::ofstream(file) << text;
+    return file;
+  }
+  std::vector<std::string> train(const fs::path& file) const {
+    return {kCorridor, "train", file, "--run", temporary.path() / "run"};
+  }
+
+  TemporaryDirectory temporary;
+  fs::path run = temporary.path() / "run";
+};
+
+TEST_F(BadInput, AnUnknownKeyIsNamedWithTheOneThatWasMeant) {
+  expect_failure(train(scenario("[traffic]\nblind_rate = 0.1\n")),
+                 {"traffic.blind_rate", "blind_rate_per_s"});
+  EXPECT_FALSE(fs::exists(run));
+}
+
+TEST_F(BadInput, AWrongTypeIsNamed) {
+  expect_failure(train(scenario("[road]\nlanes = \"three\"\n")), {"road.lanes", "three"});
+}
+
+TEST_F(BadInput, AValueOutOfRangeIsNamed) {
+  expect_failure(train(scenario("[mop]\ngamma = 1.5\n")), {"mop.gamma", "1.5"});
+  expect_failure({kCorridor, "train", kSmoke, "--run", run, "--actors", "0"}, {"run.actors", "0"});
+}
+
+TEST_F(BadInput, AMissingScenarioIsNamed) {
+  expect_failure(train(temporary.path() / "nothing.toml"), {"nothing.toml"});
+}
+
+TEST_F(BadInput, CheckSaysWhetherAScenarioIsRight) {
+  const CommandResult good = run_command({kCorridor, "check", kSmoke}, kDeadline_s);
+  EXPECT_EQ(good.status, 0) << good.output;
+  expect_failure({kCorridor, "check", scenario("[bp]\nsteps = -1\n")}, {"bp.steps", "-1"});
+}
+
+TEST_F(BadInput, ARunDirectoryThatExistsIsLeftAlone) {
+  fs::create_directory(run);
+  std::ofstream(run / "mine") << "precious";
+  expect_failure(train_command(run), {run.string(), "exists"});
+  EXPECT_TRUE(fs::exists(run / "mine"));
+  EXPECT_EQ(std::distance(fs::directory_iterator(run), {}), 1);
+}
+
+TEST_F(BadInput, CommandsOnWhatIsNoRunSaySo) {
+  for (const char* command : {"resume", "evaluate", "fingerprint"}) {
+    expect_failure({kCorridor, command, temporary.path() / "none"}, {"none"});
+  }
+}
+
+TEST_F(BadInput, AnUnknownPlannerIsNamedWithTheKnownOnes) {
+  ASSERT_EQ(run_command(train_command(run), kDeadline_s).status, 0);
+  expect_failure({kCorridor, "evaluate", run, "--planners", "best"}, {"best", "hierarchical"});
+  expect_failure({kCorridor, "redrive", run, "hierarchical_9_9"}, {"hierarchical_9_9"});
+}
+
+TEST_F(BadInput, APortInUseIsNamed) {
+  const int listener = socket(AF_INET, SOCK_STREAM, 0);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  ASSERT_EQ(bind(listener, reinterpret_cast<sockaddr*>(&address), sizeof address), 0);
+  ASSERT_EQ(listen(listener, 1), 0);
+  socklen_t size = sizeof address;
+  getsockname(listener, reinterpret_cast<sockaddr*>(&address), &size);
+  const std::string port = std::to_string(ntohs(address.sin_port));
+  expect_failure(
+      train_command(run, {"--set", "run.transport=\"tcp\"", "--set", "run.replay_port=" + port}),
+      {port, "in use"});
+  close(listener);
+}
+
+TEST_F(BadInput, MissingSumoIsNamed) {
+  expect_failure(train_command(run), {"netconvert", "sumo"},
+                 {{"PATH", "/nonexistent"}, {"SUMO_HOME", "/nonexistent"}});
+  EXPECT_FALSE(fs::exists(run));
+}
+
+TEST_F(BadInput, ATruncatedOrMissingCheckpointFileIsNamed) {
+  ASSERT_EQ(run_command(train_command(run), kDeadline_s).status, 0);
+  std::ifstream current(run / "checkpoints" / "CURRENT");
+  std::string name;
+  current >> name;
+  const fs::path directory = run / "checkpoints" / name;
+  for (const char* file : {"learner.safetensors", "replay.safetensors"}) {
+    const fs::path path = directory / file;
+    const auto size = fs::file_size(path);
+    fs::copy_file(path, temporary.path() / "copy", fs::copy_options::overwrite_existing);
+    fs::resize_file(path, size / 2);
+    expect_failure({kCorridor, "fingerprint", run}, {file});
+    expect_failure({kCorridor, "evaluate", run, "--steps", "10"}, {file});
+    expect_failure({kCorridor, "resume", run}, {file});
+    fs::remove(path);
+    expect_failure({kCorridor, "fingerprint", run}, {file});
+    fs::copy_file(temporary.path() / "copy", path);
+  }
+  EXPECT_EQ(run_command({kCorridor, "resume", run}, kDeadline_s).status, 0);
+}
+
+TEST_F(BadInput, AnActorThatDiesAtStartEndsTheRunWithItsReason) {
+  Command training(train_command(run, {"--set", "mop.steps=1000000"}));
+  ASSERT_TRUE(training.wait_for("MoP", 60.0));
+  training.signal(SIGINT);
+  ASSERT_EQ(training.finish(30.0).status, 130);
+  // The network is gone when the actors look for it.
+  fs::remove(run / "sumo" / "road.net.xml");
+  expect_failure({kCorridor, "resume", run}, {"actor", "road.net.xml"});
+}
+
+TEST_F(BadInput, AKilledProcessEndsTheRunWithItsName) {
+  for (const char* program : {"corridor-actor", "corridor-learner", "corridor-replay"}) {
+    const fs::path directory = temporary.path() / program;
+    Command training(train_command(directory, {"--set", "mop.steps=1000000"}));
+    ASSERT_TRUE(training.wait_for("MoP", 60.0));
+    const auto processes = processes_with(std::string(program) + " " + directory.string());
+    ASSERT_FALSE(processes.empty());
+    kill(std::stoi(processes.front()), SIGKILL);
+    const CommandResult result = training.finish(30.0);
+    EXPECT_EQ(result.status, 1) << result.output;
+    EXPECT_NE(result.output.find(std::string(program).substr(9)), std::string::npos)
+        << result.output;
+    expect_nothing_left(directory);
+  }
+}
+
+TEST_F(BadInput, AKilledLauncherTakesEverythingWithIt) {
+  Command training(train_command(run, {"--set", "mop.steps=1000000"}));
+  ASSERT_TRUE(training.wait_for("MoP", 60.0));
+  ASSERT_GE(processes_with(run.string()).size(), 5u);
+  training.signal(SIGKILL);
+  EXPECT_EQ(training.finish(10.0).status, 137);
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+  while (!processes_with(run.string()).empty() && std::chrono::steady_clock::now() < deadline) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  }
+  expect_nothing_left(run);
+}
+
+TEST_F(BadInput, ASecondLauncherIsRefusedWhileARunGoesOn) {
+  Command training(train_command(run, {"--set", "mop.steps=1000000"}));
+  ASSERT_TRUE(training.wait_for("MoP", 60.0));
+  const CommandResult second = run_command({kCorridor, "resume", run}, kDeadline_s);
+  EXPECT_EQ(second.status, 1) << second.output;
+  EXPECT_NE(second.output.find(std::to_string(training.pid())), std::string::npos) << second.output;
+  training.signal(SIGTERM);
+  EXPECT_EQ(training.finish(30.0).status, 143);
+}
+
+TEST_F(BadInput, AFullDiskEndsTheRunWithAClearLine) {
+  // A limit on the size of files: writes fail part-way, as they do where a disk ends. The replay's
+  // part of the first checkpoint is larger.
+  std::vector<std::string> command = {"sh", "-c", "trap '' XFSZ; ulimit -f 400; exec \"$@\"", "sh"};
+  for (const auto& argument : train_command(run)) command.push_back(argument);
+  expect_failure(command, {"replay.safetensors"});
+}
+
+}  // namespace
+}  // namespace corridor::e2e

@@ -1,0 +1,116 @@
+// The whole system on two cores: two actors in real SUMO traffic, the replay server, the learner.
+#include <nlohmann/json.hpp>
+
+#include "tests/e2e/run_support.h"
+
+namespace corridor::e2e {
+namespace {
+
+using nlohmann::json;
+
+TEST(Training, TrainsBothPlannersEvaluatesThemAndDrivesTheirEpisodesAgain) {
+  TemporaryDirectory temporary;
+  const auto run = temporary.path() / "run";
+  const auto shared_memory = shared_memory_files();
+  const CommandResult trained = run_command(train_command(run), kDeadline_s);
+  ASSERT_EQ(trained.status, 0) << trained.output;
+  expect_nothing_left(run);
+
+  const auto table = temporary.path() / "table.json";
+  const auto fcd = temporary.path() / "fcd";
+  const CommandResult evaluated = run_command({kCorridor, "evaluate", run, "--steps", "300",
+                                               "--seeds", "5,6", "--json", table, "--fcd", fcd},
+                                              kDeadline_s);
+  ASSERT_EQ(evaluated.status, 0) << evaluated.output;
+  expect_nothing_left(run);
+  EXPECT_EQ(shared_memory_files(), shared_memory);
+
+  const json rows = json::parse(std::ifstream(table));
+  ASSERT_EQ(rows.size(), 10u);
+  for (const json& row : rows) {
+    EXPECT_EQ(row.at("steps"), 300) << row;
+    EXPECT_GT(row.at("distance_km").get<double>(), 0.3) << row;
+    EXPECT_GT(row.at("mean_speed_kph").get<double>(), 5.0) << row;
+    for (const char* key : {"planner", "seed", "episodes", "bp_reward_per_1000", "collisions",
+                            "collisions_by_kind", "lane_changes"}) {
+      EXPECT_TRUE(row.contains(key)) << key;
+    }
+    EXPECT_NE(evaluated.output.find(row.at("planner").get<std::string>()), std::string::npos);
+  }
+
+  const CommandResult redriven =
+      run_command({kCorridor, "redrive", run, "hierarchical_5_0"}, kDeadline_s);
+  EXPECT_EQ(redriven.status, 0) << redriven.output;
+  EXPECT_NE(redriven.output.find("as recorded"), std::string::npos) << redriven.output;
+  EXPECT_TRUE(std::filesystem::exists(fcd / "rules_6_0.fcd.xml"));
+
+  // Nothing is left to do.
+  const CommandResult again = run_command({kCorridor, "resume", run}, kDeadline_s);
+  EXPECT_EQ(again.status, 0) << again.output;
+}
+
+TEST(Training, TwiceTheSameSeedGivesTheSameBitsAlsoWhenProcessesAreSlowedAtRandom) {
+  TemporaryDirectory temporary;
+  const auto first = temporary.path() / "first";
+  const auto slowed = temporary.path() / "slowed";
+  const auto other = temporary.path() / "other";
+  const CommandResult first_result = run_command(train_command(first), kDeadline_s);
+  ASSERT_EQ(first_result.status, 0) << first_result.output;
+  // The delays are no part of what is computed, so they must not be part of the fingerprint.
+  const CommandResult slowed_result =
+      run_command(train_command(slowed, {"--set", "run.delay_ms_max=60"}), kDeadline_s);
+  ASSERT_EQ(slowed_result.status, 0) << slowed_result.output;
+  EXPECT_EQ(fingerprint(first), fingerprint(slowed));
+
+  ASSERT_EQ(run_command(train_command(other, {}, "4"), kDeadline_s).status, 0);
+  EXPECT_NE(fingerprint(first), fingerprint(other));
+}
+
+TEST(Training, InterruptedAndResumedItEndsWithTheSameBits) {
+  TemporaryDirectory temporary;
+  const auto whole = temporary.path() / "whole";
+  const auto parts = temporary.path() / "parts";
+  ASSERT_EQ(run_command(train_command(whole), kDeadline_s).status, 0);
+
+  // Slowed, so that there is something to interrupt. Twice: in the first phase and in the second.
+  const auto slow = train_command(parts, {"--set", "run.delay_ms_max=100"});
+  int interruptions = 0;
+  for (const char* phase : {"\"MoP\"", "\"BP\""}) {
+    Command command(phase == std::string("\"MoP\"")
+                        ? slow
+                        : std::vector<std::string>{kCorridor, "resume", parts});
+    const auto metrics = parts / "metrics" / "learner.jsonl";
+    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+    std::string text;
+    while (text.find(phase) == std::string::npos && std::chrono::steady_clock::now() < deadline) {
+      command.wait_for("never printed", 0.05);
+      std::ifstream in(metrics);
+      text.assign((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
+    }
+    const auto before = std::chrono::steady_clock::now();
+    command.signal(SIGINT);
+    const CommandResult result = command.finish(30.0);
+    const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - before;
+    EXPECT_EQ(result.status, 130) << result.output;
+    EXPECT_LT(taken.count(), 5.0);
+    interruptions += result.status == 130;
+    expect_nothing_left(parts);
+  }
+  ASSERT_EQ(interruptions, 2);
+  const CommandResult resumed = run_command({kCorridor, "resume", parts}, kDeadline_s);
+  ASSERT_EQ(resumed.status, 0) << resumed.output;
+  EXPECT_EQ(fingerprint(parts), fingerprint(whole));
+}
+
+TEST(Training, WithOneActorAndWithThreeItTrainsToo) {
+  TemporaryDirectory temporary;
+  for (const char* actors : {"1", "3"}) {
+    const auto run = temporary.path() / actors;
+    const CommandResult result = run_command(train_command(run, {}, "3", actors), kDeadline_s);
+    EXPECT_EQ(result.status, 0) << result.output;
+    expect_nothing_left(run);
+  }
+}
+
+}  // namespace
+}  // namespace corridor::e2e

@@ -1,0 +1,374 @@
+#include "replay/replay_service.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <stdlib.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "proto/failure.h"
+#include "proto/hash.h"
+#include "proto/random.h"
+#include "proto/run_directory.h"
+
+namespace corridor::replay {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+constexpr ClientId kLearner{Role::kLearner, 0};
+constexpr ClientId actor(std::uint32_t index) { return {Role::kActor, index}; }
+
+constexpr int kActors = 3;
+constexpr std::uint64_t kMopRounds = 6;
+constexpr std::uint64_t kRounds = 10;
+
+// Six rounds of the MoP, four of the BP; every chunk has about 20 rows, of which 50 are kept.
+RunConfig small_config() {
+  RunConfig config;
+  config.run.seed = 5;
+  config.run.actors = kActors;
+  config.schedule.steps_per_round = 20;
+  for (DqnSettings& dqn : config.dqn) {
+    dqn.capacity = 150;
+    dqn.minimum_size = 70;
+    dqn.batch_size = 8;
+    dqn.samples_per_insert = 2.0;
+  }
+  config.dqn[0].steps = 20 * kActors * kMopRounds;
+  config.dqn[1].steps = 20 * kActors * (kRounds - kMopRounds);
+  return config;
+}
+
+// What an actor sends in a round: a function of both, of uneven length.
+Insert chunk(std::uint64_t round, std::uint32_t index) {
+  const RunConfig config = small_config();
+  const Phase phase = round < kMopRounds ? Phase::kMop : Phase::kBp;
+  const RowLayout layout{config.shape(phase).observations};
+  Insert result;
+  result.round = round;
+  result.observations = static_cast<std::uint32_t>(layout.observations);
+  const std::uint64_t count = 16 + random_below(9, 1, Purpose::kBootstrap, {round, index});
+  for (std::uint64_t i = 0; i < count * layout.stride(); ++i) {
+    result.rows.push_back(
+        static_cast<float>(random_unit(2, Purpose::kBootstrap, {round, index, i})));
+  }
+  for (std::uint64_t i = 0; i < count; ++i) {
+    const double unit = random_unit(3, Purpose::kBootstrap, {round, index, i});
+    result.priorities.push_back(static_cast<float>(std::pow(10.0, -6.0 + 9.0 * unit)));
+  }
+  result.open = {round / 2, {static_cast<std::uint8_t>(index), static_cast<std::uint8_t>(round)}};
+  return result;
+}
+
+template <typename Reply>
+Reply reply_of(const Outcome& outcome) {
+  if (const auto* refused = std::get_if<Refused>(&outcome)) {
+    ADD_FAILURE() << "refused: " << refused->text;
+    return {};
+  }
+  const auto* reply = std::get_if<ReplayReply>(&outcome);
+  if (reply == nullptr || !std::holds_alternative<Reply>(*reply)) {
+    ADD_FAILURE() << "another reply";
+    return {};
+  }
+  return std::get<Reply>(*reply);
+}
+
+std::string refusal_of(const Outcome& outcome) {
+  const auto* refused = std::get_if<Refused>(&outcome);
+  return refused == nullptr ? "not refused" : refused->text;
+}
+
+void insert(ReplayService& service, std::uint64_t round, std::uint32_t index) {
+  reply_of<Inserted>(service.handle(actor(index), chunk(round, index)));
+}
+
+Opened open(ReplayService& service, std::uint64_t round) {
+  EXPECT_TRUE(std::holds_alternative<Waiting>(service.handle(kLearner, OpenBlock{round})));
+  const std::optional<Opened> opened = service.try_open();
+  EXPECT_TRUE(opened.has_value()) << "block " << round;
+  return opened.value_or(Opened{});
+}
+
+// A learner's block: all granted batches, new priorities one batch late.
+void train(ReplayService& service, std::uint32_t batches, std::vector<Batch>& log) {
+  Step step;
+  step.importance_exponent = 0.5;
+  for (std::uint32_t i = 0; i <= batches; ++i) {
+    step.count = i < batches ? 8 : 0;
+    Batch batch = reply_of<Batch>(service.handle(kLearner, step));
+    step.keys = batch.keys;
+    step.priorities = batch.weights;
+    log.push_back(std::move(batch));
+  }
+}
+
+void run_blocks(ReplayService& service, std::uint64_t from, std::uint64_t to,
+                std::vector<Batch>& log) {
+  for (std::uint64_t round = from; round < to; ++round) {
+    for (std::uint32_t index = 0; index < kActors; ++index) insert(service, round, index);
+    train(service, open(service, round).batches, log);
+  }
+}
+
+class ReplayServiceTest : public testing::Test {
+ protected:
+  ReplayServiceTest() {
+    std::string pattern = (fs::temp_directory_path() / "replay_service_XXXXXX").string();
+    directory_ = mkdtemp(pattern.data());
+  }
+  ~ReplayServiceTest() override { fs::remove_all(directory_); }
+
+  std::string saved_bytes(const ReplayService& service) const {
+    service.save(directory_);
+    return read_file(directory_ / "replay.safetensors");
+  }
+
+  fs::path directory_;
+};
+
+TEST_F(ReplayServiceTest, BatchesDependOnNoOrderOfArrival) {
+  ReplayService in_order(small_config());
+  std::vector<Batch> expected;
+  run_blocks(in_order, 0, kRounds, expected);
+  const std::string expected_bytes = saved_bytes(in_order);
+  EXPECT_GT(expected.size(), 100U);
+
+  for (std::uint64_t shuffle = 0; shuffle < 20; ++shuffle) {
+    ReplayService service(small_config());
+    std::vector<Batch> log;
+    std::vector<std::uint64_t> sent(kActors);
+    std::uint64_t draw = 0;
+    for (std::uint64_t round = 0; round < kRounds; ++round) {
+      ASSERT_TRUE(std::holds_alternative<Waiting>(service.handle(kLearner, OpenBlock{round})));
+      std::optional<Opened> opened = service.try_open();
+      while (!opened) {
+        // Any actor, up to two rounds ahead of the last block.
+        const auto index = static_cast<std::uint32_t>(
+            random_below(kActors, shuffle, Purpose::kBootstrap, {draw++}));
+        if (sent[index] < std::min(round + 2, kRounds)) insert(service, sent[index]++, index);
+        opened = service.try_open();
+      }
+      train(service, opened->batches, log);
+    }
+    ASSERT_EQ(log, expected) << "order " << shuffle;
+    ASSERT_EQ(saved_bytes(service), expected_bytes) << "order " << shuffle;
+  }
+}
+
+TEST_F(ReplayServiceTest, ARestoredServiceContinuesWithTheSameBits) {
+  for (std::uint64_t cut = 1; cut < kRounds; ++cut) {
+    ReplayService service(small_config());
+    std::vector<Batch> before;
+    run_blocks(service, 0, cut, before);
+    // A parked chunk is no part of the checkpoint.
+    insert(service, cut, 1);
+    reply_of<Saved>(service.handle(kLearner, Save{directory_.string()}));
+
+    ReplayService restored(small_config());
+    restored.load(directory_);
+    EXPECT_EQ(reply_of<Joined>(restored.handle(actor(1), Join{})).next_round, cut);
+    EXPECT_EQ(restored.metrics(), service.metrics());
+    insert(service, cut, 0);
+    insert(service, cut, 2);
+    std::vector<Batch> expected;
+    train(service, open(service, cut).batches, expected);
+    run_blocks(service, cut + 1, kRounds, expected);
+    std::vector<Batch> log;
+    run_blocks(restored, cut, kRounds, log);
+    ASSERT_EQ(log, expected) << "cut before round " << cut;
+    ASSERT_EQ(saved_bytes(restored), saved_bytes(service));
+  }
+}
+
+TEST_F(ReplayServiceTest, GrantsTheAskedRatio) {
+  ReplayService service(small_config());
+  std::uint64_t granted = 0;
+  std::uint64_t inserted = 0;
+  for (std::uint64_t round = 0; round < kMopRounds; ++round) {
+    for (std::uint32_t index = 0; index < kActors; ++index) {
+      inserted += chunk(round, index).priorities.size();
+      insert(service, round, index);
+    }
+    const Opened opened = open(service, round);
+    granted += opened.batches;
+    EXPECT_EQ(opened.inserted, inserted);
+    EXPECT_EQ(opened.size, std::min<std::uint64_t>(inserted, 150));
+    EXPECT_EQ(granted, inserted < 70 ? 0 : (inserted - 69) * 2 / 8);
+  }
+}
+
+TEST_F(ReplayServiceTest, APhaseStartsAfreshButForItsKeys) {
+  ReplayService service(small_config());
+  std::vector<Batch> log;
+  run_blocks(service, 0, kMopRounds, log);
+  const std::vector<std::uint64_t> old_keys = log[log.size() - 2].keys;
+  ASSERT_EQ(old_keys.size(), 8U);
+  for (std::uint32_t index = 0; index < kActors; ++index) insert(service, kMopRounds, index);
+  const Opened opened = open(service, kMopRounds);
+  EXPECT_EQ(opened.inserted, opened.size);
+  EXPECT_LT(opened.size, 80U);
+  EXPECT_EQ(opened.sampled, 0U);
+  EXPECT_EQ(opened.stale_priorities, 0U);
+
+  const Batch batch = reply_of<Batch>(
+      service.handle(kLearner, Step{old_keys, std::vector<float>(8, 1e9F), 8, 0.4}));
+  EXPECT_EQ(batch.observations, static_cast<std::uint32_t>(bp_shape(3).observations));
+  EXPECT_GT(*std::min_element(batch.keys.begin(), batch.keys.end()),
+            *std::max_element(old_keys.begin(), old_keys.end()));
+  insert(service, kMopRounds + 1, 0);
+  insert(service, kMopRounds + 1, 1);
+  insert(service, kMopRounds + 1, 2);
+  EXPECT_EQ(open(service, kMopRounds + 1).stale_priorities, 8U);
+}
+
+TEST_F(ReplayServiceTest, ARestartedActorGoesOnAfterItsLastChunkParkedOrNot) {
+  ReplayService service(small_config());
+  EXPECT_EQ(reply_of<Joined>(service.handle(actor(1), Join{})), (Joined{0, {}}));
+  insert(service, 0, 1);
+  EXPECT_EQ(reply_of<Joined>(service.handle(actor(1), Join{})), (Joined{1, chunk(0, 1).open}));
+  EXPECT_EQ(reply_of<Joined>(service.handle(actor(2), Join{})), (Joined{0, {}}));
+  EXPECT_EQ(reply_of<Joined>(service.handle(kLearner, Join{})), (Joined{0, {}}));
+  insert(service, 0, 0);
+  insert(service, 0, 2);
+  insert(service, 1, 1);
+  open(service, 0);
+  EXPECT_EQ(reply_of<Joined>(service.handle(actor(1), Join{})), (Joined{2, chunk(1, 1).open}));
+  EXPECT_EQ(reply_of<Joined>(service.handle(actor(2), Join{})), (Joined{1, chunk(0, 2).open}));
+  EXPECT_EQ(reply_of<Joined>(service.handle(kLearner, Join{})), (Joined{1, {}}));
+
+  service.save(directory_);
+  ReplayService restored(small_config());
+  restored.load(directory_);
+  EXPECT_EQ(reply_of<Joined>(restored.handle(actor(1), Join{})), (Joined{1, chunk(0, 1).open}));
+  EXPECT_EQ(reply_of<Joined>(restored.handle(actor(2), Join{})), (Joined{1, chunk(0, 2).open}));
+}
+
+TEST_F(ReplayServiceTest, NoEpisodeIsCarriedIntoTheNextPhase) {
+  ReplayService service(small_config());
+  std::vector<Batch> log;
+  run_blocks(service, 0, kMopRounds, log);
+  EXPECT_EQ(reply_of<Joined>(service.handle(actor(0), Join{})), (Joined{kMopRounds, {}}));
+  insert(service, kMopRounds, 0);
+  EXPECT_EQ(reply_of<Joined>(service.handle(actor(0), Join{})),
+            (Joined{kMopRounds + 1, chunk(kMopRounds, 0).open}));
+}
+
+TEST_F(ReplayServiceTest, ABlockOpensWhenItsLastChunkComes) {
+  ReplayService service(small_config());
+  EXPECT_THAT(service.awaited(), IsEmpty());
+  EXPECT_TRUE(std::holds_alternative<Waiting>(service.handle(kLearner, OpenBlock{0})));
+  EXPECT_THAT(service.awaited(), ElementsAre(0, 1, 2));
+  insert(service, 0, 2);
+  insert(service, 0, 0);
+  EXPECT_FALSE(service.try_open().has_value());
+  EXPECT_THAT(service.awaited(), ElementsAre(1));
+  // A learner that restarts asks again.
+  EXPECT_TRUE(std::holds_alternative<Waiting>(service.handle(kLearner, OpenBlock{0})));
+  EXPECT_THAT(refusal_of(service.handle(kLearner, Step{{}, {}, 1, 0.4})), HasSubstr("outside"));
+  EXPECT_THAT(refusal_of(service.handle(kLearner, Save{directory_.string()})), HasSubstr("open"));
+  insert(service, 0, 1);
+  EXPECT_TRUE(service.try_open().has_value());
+  EXPECT_FALSE(service.try_open().has_value());
+  EXPECT_THAT(service.awaited(), IsEmpty());
+}
+
+TEST_F(ReplayServiceTest, ChunksThatMakeNoSenseAreRefusedAndLeaveNoTrace) {
+  ReplayService service(small_config());
+  const auto refusal = [&](const auto& spoil) {
+    Insert spoiled = chunk(0, 0);
+    spoil(spoiled);
+    return refusal_of(service.handle(actor(0), spoiled));
+  };
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  for (const float bad : {std::nanf(""), kInfinity, -kInfinity, -1e-6F}) {
+    EXPECT_THAT(refusal([&](Insert& it) { it.priorities[3] = bad; }), HasSubstr("priorities"));
+  }
+  EXPECT_THAT(refusal([](Insert& it) { it.rows[5] = std::nanf(""); }), HasSubstr("NaN"));
+  EXPECT_THAT(refusal([](Insert& it) { it.rows.pop_back(); }), HasSubstr("floats for"));
+  EXPECT_THAT(refusal([](Insert& it) { it.priorities.pop_back(); }), HasSubstr("floats for"));
+  EXPECT_THAT(refusal([](Insert& it) { ++it.observations; }), HasSubstr("floats for"));
+  EXPECT_THAT(refusal([](Insert& it) { it = chunk(1, 0); }), HasSubstr("next is round 0"));
+  EXPECT_THAT(refusal([](Insert& it) { it.round = kRounds; }), HasSubstr("a run of 10 rounds"));
+  // Rows of the other phase.
+  EXPECT_THAT(refusal([](Insert& it) { it.round = kMopRounds; }), HasSubstr("floats for"));
+  EXPECT_EQ(reply_of<Joined>(service.handle(actor(0), Join{})), (Joined{0, {}}));
+
+  insert(service, 0, 0);
+  insert(service, 1, 0);
+  EXPECT_THAT(refusal_of(service.handle(actor(0), chunk(2, 0))), HasSubstr("before round 0"));
+}
+
+TEST_F(ReplayServiceTest, StepsThatMakeNoSenseAreRefusedAndLeaveNoTrace) {
+  ReplayService service(small_config());
+  ReplayService untouched(small_config());
+  std::vector<Batch> log;
+  run_blocks(service, 0, 3, log);
+  run_blocks(untouched, 0, 3, log);
+  const auto refusal = [&](Step step) { return refusal_of(service.handle(kLearner, step)); };
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  const double nan = std::nan("");
+  for (const float bad : {std::nanf(""), kInfinity, -1.0F}) {
+    EXPECT_THAT(refusal({{100, 101}, {1.0F, bad}, 8, 0.4}), HasSubstr("priorities"));
+  }
+  EXPECT_THAT(refusal({{100, UINT64_MAX}, {1.0F, 1.0F}, 8, 0.4}), HasSubstr("for key"));
+  EXPECT_THAT(refusal({{100}, {1.0F, 1.0F}, 8, 0.4}), HasSubstr("1 keys, 2 priorities"));
+  EXPECT_THAT(refusal({{100}, {1.0F}, 151, 0.4}), HasSubstr("151 rows wanted of 150"));
+  EXPECT_THAT(refusal({{100}, {1.0F}, 8, nan}), HasSubstr("exponent"));
+  EXPECT_THAT(refusal({{100}, {1.0F}, 8, -0.1}), HasSubstr("exponent"));
+  EXPECT_EQ(saved_bytes(service), saved_bytes(untouched));
+}
+
+TEST_F(ReplayServiceTest, ClientsOutsideTheirRoleAreRefused) {
+  ReplayService service(small_config());
+  EXPECT_THAT(refusal_of(service.handle(actor(3), Join{})), HasSubstr("run.actors"));
+  EXPECT_THAT(refusal_of(service.handle(actor(3), chunk(0, 0))), HasSubstr("run.actors"));
+  EXPECT_THAT(refusal_of(service.handle({Role::kLearner, 1}, Join{})), HasSubstr("1 learner"));
+  EXPECT_THAT(refusal_of(service.handle(actor(0), OpenBlock{0})), HasSubstr("an actor"));
+  EXPECT_THAT(refusal_of(service.handle(actor(0), Step{})), HasSubstr("an actor"));
+  EXPECT_THAT(refusal_of(service.handle(actor(0), Save{"/tmp"})), HasSubstr("an actor"));
+  EXPECT_THAT(refusal_of(service.handle(kLearner, chunk(0, 0))), HasSubstr("a learner"));
+}
+
+TEST_F(ReplayServiceTest, BlocksOpenInTheirOrderUpToTheLast) {
+  ReplayService service(small_config());
+  EXPECT_THAT(refusal_of(service.handle(kLearner, OpenBlock{1})), HasSubstr("the next is block 0"));
+  std::vector<Batch> log;
+  run_blocks(service, 0, kRounds, log);
+  EXPECT_THAT(refusal_of(service.handle(kLearner, OpenBlock{kRounds})),
+              HasSubstr("block 10 of 10"));
+  EXPECT_THAT(refusal_of(service.handle(kLearner, OpenBlock{3})), HasSubstr("block 3 wanted"));
+}
+
+TEST_F(ReplayServiceTest, ASaveEndsTheBlockAndFailsByARefusal) {
+  ReplayService service(small_config());
+  std::vector<Batch> log;
+  run_blocks(service, 0, 3, log);
+  EXPECT_THAT(refusal_of(service.handle(kLearner, Save{(directory_ / "none").string()})),
+              HasSubstr((directory_ / "none").string()));
+  reply_of<Saved>(service.handle(kLearner, Save{directory_.string()}));
+  EXPECT_THAT(refusal_of(service.handle(kLearner, Step{{}, {}, 8, 0.4})), HasSubstr("outside"));
+}
+
+TEST_F(ReplayServiceTest, ACheckpointOfAnotherConfigurationIsAFailure) {
+  ReplayService service(small_config());
+  std::vector<Batch> log;
+  run_blocks(service, 0, kRounds, log);
+  service.save(directory_);
+  RunConfig more_actors = small_config();
+  more_actors.run.actors = 4;
+  EXPECT_THROW(ReplayService(more_actors).load(directory_), Failure);
+  RunConfig shorter = small_config();
+  shorter.dqn[1].steps = 60;
+  EXPECT_THROW(ReplayService(shorter).load(directory_), Failure);
+  EXPECT_THROW(ReplayService(small_config()).load(directory_ / "none"), Failure);
+}
+
+}  // namespace
+}  // namespace corridor::replay
