@@ -13,13 +13,14 @@
 namespace corridor::cluster {
 
 struct EvaluateOptions {
-  std::filesystem::path run;
-  std::vector<std::string> planners;  // empty: all
-  std::optional<std::int64_t> steps;  // for each planner and seed; else [evaluation] steps
-  std::vector<std::uint64_t> seeds;   // empty: [evaluation] seeds
-  std::optional<int> jobs;            // processes at a time; else the number of cores
-  std::filesystem::path json;         // empty: none
-  std::filesystem::path fcd;          // directory of SUMO's trajectories; empty: none
+  std::filesystem::path run = {};
+  std::vector<std::string> planners = {};  // empty: all
+  std::optional<std::int64_t> steps =
+      {};                                 // for each planner and seed = {}; else [evaluation] steps
+  std::vector<std::uint64_t> seeds = {};  // empty: [evaluation] seeds
+  std::optional<int> jobs = {};           // processes at a time = {}; else the number of cores
+  std::filesystem::path json = {};        // empty: none
+  std::filesystem::path fcd = {};         // directory of SUMO's trajectories = {}; empty: none
 };
 
 // Drives each planner on the test episodes of each seed and prints the table. Returns the exit

@@ -10,11 +10,11 @@
 namespace corridor::cluster {
 
 struct TrainOptions {
-  std::filesystem::path scenario;
-  std::filesystem::path run;
-  std::optional<int> actors;          // run.actors
-  std::optional<std::uint64_t> seed;  // run.seed
-  std::vector<std::string> settings;  // "table.key=value", applied last
+  std::filesystem::path scenario = {};
+  std::filesystem::path run = {};
+  std::optional<int> actors = {};          // run.actors
+  std::optional<std::uint64_t> seed = {};  // run.seed
+  std::vector<std::string> settings = {};  // "table.key=value", applied last
 };
 
 // Both return the process's exit status: 0 when the training is complete, 128 + signal when it was

@@ -1,0 +1,77 @@
+// corridor-learner RUN_DIRECTORY: trains a run's planners and publishes their weights.
+#include <spdlog/spdlog.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "learner/blas.h"
+#include "learner/publisher.h"
+#include "learner/q_network.h"
+#include "learner/replay_client.h"
+#include "learner/training.h"
+#include "proto/endpoint.h"
+#include "proto/metrics.h"
+#include "proto/program.h"
+#include "proto/run_config.h"
+#include "proto/run_directory.h"
+
+namespace {
+
+using namespace corridor;
+
+// Into the log and beside config.toml: what the bits and the speed depend on.
+void record_libraries(const RunDirectory& directory, const std::string& device) {
+  const learner::Blas blas = learner::blas_in_use();
+  spdlog::info("LibTorch {} on {}, BLAS {} {}", learner::libtorch_version(), device, blas.library,
+               blas.core);
+  const std::string warning = learner::warning_about(blas);
+  if (!warning.empty()) spdlog::warn(warning);
+  const nlohmann::json record = {{"libtorch", learner::libtorch_version()},
+                                 {"device", device},
+                                 {"blas", blas.library},
+                                 {"blas_core", blas.core},
+                                 {"blas_config", blas.config}};
+  write_file(directory.root() / "learner.json", record.dump(2) + "\n");
+}
+
+int run(const std::string& root) {
+  learner::use_one_torch_thread();
+  const RunDirectory directory = RunDirectory::open(root);
+  const RunConfig config = load_run_config(directory.config());
+  const std::string run_id = read_manifest(directory).run_id;
+  learner::check_device(config.run.device);
+  record_libraries(directory, config.run.device);
+
+  const Addresses where = addresses(config.run, run_id);
+  const auto started = std::chrono::system_clock::now().time_since_epoch();
+  const ClientIdentity identity{
+      run_id, Role::kLearner, 0,
+      static_cast<std::uint64_t>(
+          std::chrono::duration_cast<std::chrono::nanoseconds>(started).count())};
+  ClientLimits limits;
+  limits.peer_timeout = Duration(static_cast<std::int64_t>(config.run.peer_timeout_s * 1000.0));
+
+  learner::LearnerState state = learner::load_state(config, directory);
+  MetricsWriter metrics(directory.metrics("learner"));
+  Server server(where.learner, run_id);
+  learner::Publisher publisher(server, static_cast<std::size_t>(config.run.actors));
+  Client client(where.replay, "replay server", identity, limits);
+  learner::ReplayClient replay(client, [&] { publisher.service(Duration::zero()); });
+  learner::Training training(config, {directory, replay, publisher, metrics, stop_requested},
+                             std::move(state));
+  training.run();
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("The learner of a corridor run; `corridor` starts it.");
+  std::string root;
+  app.add_option("RUN_DIRECTORY", root, "the run, as `corridor train` made it")->required();
+  app.set_version_flag("--version", kVersion);
+  CLI11_PARSE(app, argc, argv);
+  return run_program("corridor-learner", true, [&] { return run(root); });
+}

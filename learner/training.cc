@@ -1,0 +1,269 @@
+#include "learner/training.h"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "proto/failure.h"
+#include "proto/random.h"
+
+namespace corridor::learner {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr std::chrono::minutes kHangs{30};  // no round of any scenario takes that long
+constexpr Duration kGlance{1};
+constexpr std::int64_t kStepsPerReport = 2500;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+double between(double first, double last, double progress) {
+  return first + (last - first) * progress;
+}
+
+std::string list(const std::vector<std::uint32_t>& numbers) {
+  std::string text;
+  for (const std::uint32_t number : numbers) {
+    text += (text.empty() ? "" : ", ") + std::to_string(number);
+  }
+  return text;
+}
+
+}  // namespace
+
+LearnerState load_state(const RunConfig& config, const RunDirectory& directory) {
+  const std::optional<std::filesystem::path> checkpoint = directory.newest_checkpoint();
+  if (!checkpoint) return initial_state(config);
+  const std::filesystem::path file = *checkpoint / kLearnerFile;
+  return from_tensors(read_tensors(file), config, file.string());
+}
+
+Training::Training(const RunConfig& config, Surroundings surroundings, LearnerState state)
+    : config_(config),
+      schedule_(config),
+      around_(std::move(surroundings)),
+      state_(std::move(state)),
+      phase_(phase_in_progress(schedule_, state_.next_round)),
+      checkpointed_(state_.next_round),
+      reported_(Clock::now()) {
+  begin_phase(std::move(state_.td));
+}
+
+void Training::begin_phase(TdState initial) {
+  td_ = std::make_unique<TdUpdate>(config_.network(phase_), dqn(), config_.run.device, initial);
+}
+
+bool Training::run() {
+  for (const Weights& weights : state_.published) around_.publisher.publish(weights);
+  around_.replay.join(state_.next_round);
+  spdlog::info("goes on with block {} of {} ({}), {} updates done", state_.next_round,
+               schedule_.rounds(), phase_name(phase_), td_->updates());
+  while (state_.next_round < schedule_.rounds()) {
+    const std::uint64_t round = state_.next_round;
+    if (around_.stop_requested()) {
+      checkpoint();
+      return false;
+    }
+    if (!train_round(round)) return false;
+    if (schedule_.checkpoints_after(round)) checkpoint();
+  }
+  spdlog::info("all {} blocks are done", schedule_.rounds());
+  return true;
+}
+
+bool Training::train_round(std::uint64_t round) {
+  delay(round);
+  if (schedule_.selects_in(round) && !await_selection(round)) {
+    checkpoint();
+    return false;
+  }
+  const std::optional<Opened> opened = await_block(round);
+  if (!opened) {
+    spdlog::info("stops while block {} waits for actors: resuming goes on at block {}", round,
+                 checkpointed_);
+    return false;
+  }
+  const BlockResult result = train_block(round, *opened);
+  finish_block(round);
+  report(round, *opened, result);
+  selected_.reset();
+  return true;
+}
+
+bool Training::await_selection(std::uint64_t round) {
+  const Clock::time_point start = Clock::now();
+  while (!(selected_ = around_.publisher.selection(round))) {
+    if (around_.stop_requested()) return false;
+    if (Clock::now() - start > kHangs) {
+      throw Failure(
+          "round {}: actors {} have not reported their evaluation in {} min: see their "
+          "logs, then resume the run",
+          round, list(around_.publisher.awaited(round)), kHangs.count());
+    }
+    around_.publisher.service(kGlance);
+  }
+  times_.wait_for_actors_s += seconds_since(start);
+  consider(*selected_);
+  return true;
+}
+
+void Training::consider(const SelectionOutcome& outcome) {
+  if (outcome.steps == 0) throw Failure("round {}: an evaluation of no steps", outcome.round);
+  score_ = (outcome.reward -
+            config_.schedule.selection_collision_cost * static_cast<double>(outcome.collisions)) *
+           1000.0 / static_cast<double>(outcome.steps);
+  const std::uint64_t version = schedule_.weights_version(outcome.round);
+  const bool better = !state_.best || score_ > state_.best->score;
+  spdlog::info("{} of version {}: score {:.1f} per 1000 steps{}", phase_name(phase_), version,
+               score_, better ? ", the best so far" : "");
+  if (!better) return;
+  // Round r drives the version before the newest of block r, or the newest where a phase begins.
+  const auto found = std::find_if(state_.published.begin(), state_.published.end(),
+                                  [&](const Weights& w) { return w.version == version; });
+  CORRIDOR_CHECK(found != state_.published.end(), "version {} in round {}", version, outcome.round);
+  state_.best = Candidate{version, score_, phase_ == Phase::kMop ? found->mop : found->bp};
+}
+
+std::optional<Opened> Training::await_block(std::uint64_t round) {
+  const Clock::time_point start = Clock::now();
+  std::optional<Clock::time_point> stopping;
+  const auto give_up = [&] {
+    if (Clock::now() - start > kHangs) {
+      throw Failure(
+          "round {}: chunks of actors are missing for {} min: see replay.log for which, "
+          "then resume the run",
+          round, kHangs.count());
+    }
+    if (!around_.stop_requested()) return false;
+    if (!stopping) stopping = Clock::now();
+    return Clock::now() - *stopping > around_.stop_patience;
+  };
+  std::optional<Opened> opened = around_.replay.open_block(round, give_up);
+  times_.wait_for_actors_s += seconds_since(start);
+  return opened;
+}
+
+Training::BlockResult Training::train_block(std::uint64_t round, const Opened& opened) {
+  const double progress = schedule_.phase_progress(round);
+  const double learning_rate = between(dqn().learning_rate, dqn().learning_rate_end, progress);
+  const Block block{opened.batches, static_cast<std::uint32_t>(dqn().batch_size),
+                    between(dqn().importance_exponent, dqn().importance_exponent_end, progress)};
+  const double waited_before_s = around_.replay.waited_s();
+  BlockResult result;
+  around_.replay.run_block(block, [&](const Batch& batch) {
+    const Clock::time_point start = Clock::now();
+    TdUpdate::Result update = td_->update(batch, learning_rate);
+    times_.update_s += seconds_since(start);
+    result.loss += update.loss / opened.batches;
+    result.q_value += update.q_value / opened.batches;
+    around_.publisher.service(Duration::zero());
+    return std::move(update.priorities);
+  });
+  result.updates = td_->updates();
+  times_.wait_for_replay_s += around_.replay.waited_s() - waited_before_s;
+  return result;
+}
+
+void Training::finish_block(std::uint64_t round) {
+  const Clock::time_point start = Clock::now();
+  const bool last_of_phase =
+      round + 1 == schedule_.first_round(phase_) + schedule_.rounds_of(phase_);
+  Weights next = state_.published.back();
+  next.version = round + 1;
+  std::vector<float>& learned = phase_ == Phase::kMop ? next.mop : next.bp;
+  learned = last_of_phase && state_.best ? state_.best->parameters : td_->parameters();
+  state_.published.push_back(next);
+  if (state_.published.size() > 2) state_.published.erase(state_.published.begin());
+  state_.next_round = round + 1;
+
+  if (last_of_phase && phase_ == Phase::kMop) {
+    spdlog::info("the MoP is done and frozen; the BP's phase begins");
+    phase_ = Phase::kBp;
+    state_.best.reset();
+    begin_phase(initial_td_state(next.bp));
+  }
+  around_.publisher.publish(std::move(next));
+  times_.publish_and_checkpoint_s += seconds_since(start);
+}
+
+void Training::checkpoint() {
+  if (checkpointed_ == state_.next_round) return;
+  const Clock::time_point start = Clock::now();
+  const std::uint64_t round = state_.next_round - 1;
+  const std::filesystem::path directory = around_.directory.begin_checkpoint(round);
+  around_.replay.save(directory);
+  LearnerState state = state_;
+  state.td = td_->state();
+  write_tensors(directory / kLearnerFile, to_tensors(state, config_));
+  around_.directory.commit_checkpoint(round, config_.schedule.checkpoints_kept);
+  checkpointed_ = state_.next_round;
+  times_.publish_and_checkpoint_s += seconds_since(start);
+  spdlog::info("checkpoint after block {} in {:.2f} s", round, seconds_since(start));
+}
+
+void Training::report(std::uint64_t round, const Opened& opened, const BlockResult& result) {
+  // finish_block may have begun the next phase.
+  const Phase phase = schedule_.phase_of(round);
+  const DqnSettings& settings = config_.phase(phase);
+  const std::int64_t steps = schedule_.phase_steps_before(round) + schedule_.steps_per_round();
+  steps_since_report_ += schedule_.steps_per_round();
+  const bool phase_ends = phase != phase_ || round + 1 == schedule_.rounds();
+  const std::int64_t every =
+      std::max<std::int64_t>(1, kStepsPerReport / schedule_.steps_per_round());
+  const auto rounds_done = static_cast<std::int64_t>(round - schedule_.first_round(phase) + 1);
+  if (!selected_ && !phase_ends && rounds_done % every != 0) return;
+
+  const double passed_s = std::max(seconds_since(reported_), 1e-9);
+  const auto number = [](std::uint64_t value) { return static_cast<double>(value); };
+  const std::uint64_t sampled =
+      opened.sampled +
+      std::uint64_t{opened.batches} * static_cast<std::uint64_t>(settings.batch_size);
+  std::vector<std::pair<std::string, double>> values = {
+      {"charts/SPS", static_cast<double>(steps_since_report_) / passed_s},
+      {"charts/updates", number(result.updates)},
+      {"charts/learning_rate", between(settings.learning_rate, settings.learning_rate_end,
+                                       schedule_.phase_progress(round))},
+      {"replay/size", number(opened.size)},
+      {"replay/inserted", number(opened.inserted)},
+      {"replay/sampled", number(sampled)},
+      {"replay/samples_per_insert",
+       opened.inserted == 0 ? 0.0 : number(sampled) / number(opened.inserted)},
+      {"replay/stale_priorities", number(opened.stale_priorities)},
+      {"time/wait_for_actors", times_.wait_for_actors_s / passed_s},
+      {"time/wait_for_replay", times_.wait_for_replay_s / passed_s},
+      {"time/update", times_.update_s / passed_s},
+      {"time/publish_and_checkpoint", times_.publish_and_checkpoint_s / passed_s}};
+  if (opened.batches > 0) {
+    values.emplace_back("losses/td_loss", result.loss);
+    values.emplace_back("losses/q_values", result.q_value);
+  }
+  if (selected_) {
+    const double thousands = static_cast<double>(selected_->steps) / 1000.0;
+    values.emplace_back("eval/reward_per_1000", selected_->reward / thousands);
+    values.emplace_back("eval/collisions_per_1000",
+                        static_cast<double>(selected_->collisions) / thousands);
+    values.emplace_back("eval/score", score_);
+  }
+  around_.metrics.write(phase_name(phase), round, steps, values);
+  times_ = {};
+  steps_since_report_ = 0;
+  reported_ = Clock::now();
+}
+
+// Tests slow every process at random, by other amounts in each run: the result must not change.
+void Training::delay(std::uint64_t round) const {
+  if (config_.run.delay_ms_max <= 0.0) return;
+  const auto now = static_cast<std::uint64_t>(Clock::now().time_since_epoch().count());
+  const double share = random_unit(now, Purpose::kWireDelay, {round});
+  std::this_thread::sleep_for(
+      std::chrono::duration<double, std::milli>(share * config_.run.delay_ms_max));
+}
+
+}  // namespace corridor::learner

@@ -138,6 +138,7 @@ Outcome ReplayService::answer(ClientId, const Step& request) {
 }
 
 Outcome ReplayService::answer(ClientId, const Save& request) {
+  if (request.directory.empty()) return refused("a checkpoint wanted in no directory");
   if (waits_) return refused("a checkpoint wanted while block {} is to open", next_round());
   try {
     save(request.directory);

@@ -13,7 +13,7 @@ namespace {
 constexpr double kComfortBraking_mps2 = 2.0;  // planned with
 constexpr double kHardBraking_mps2 = 4.0;     // expected of a leader, at the worst
 constexpr double kStopGap_m = 1.0;            // left over when both have braked hard
-constexpr double kIncreaseHolds_s = 2.0;      // a rise of the set-point is to last so long
+constexpr double kIncreaseHolds_s = 6.0;      // a rise of the set-point is to last so long
 
 // The room that must be left to go on with a lane change, as a share of that to begin one.
 constexpr double kGoOnShare = 0.5;
@@ -104,28 +104,40 @@ int RuleBasedMop::speed_change(const Situation& situation, int corridor_change) 
 bool RuleBasedMop::keeps_distance(const CorridorGaps& gaps, const Ego& ego,
                                   const Target& target) const {
   if (gaps.front_gap_m >= settings_.planner.gap_range_m) return true;
-  const double step_s = settings_.step_s;
-  const double way_m = Trajectory(ego, target, settings_).at(step_s).s_m - ego.s_m;
-  const double speed_mps = target.set_point_mps;
   const double leader_mps = std::max(0.0, ego.speed_mps + gaps.front_rate_mps);
+  if (!survives_hard_braking(gaps.front_gap_m, leader_mps, ego, target)) return false;
 
-  // The worst: the leader brakes hard from now on, the ego from the next step on.
-  const double braking_mps2 = std::min(settings_.ego.deceleration_max_mps2,
-                                       -settings_.planner.speed_changes_mps.front() / step_s);
-  const double left_m = gaps.front_gap_m + braking_way_m(leader_mps, kHardBraking_mps2) - way_m -
-                        braking_way_m(speed_mps, braking_mps2);
-  if (left_m < kStopGap_m) return false;
-
-  // The usual: the leader goes on as it does.
-  const double gap_m = gaps.front_gap_m + leader_mps * step_s - way_m;
+  // What the step leads to when the leader goes on as it does.
+  const TrajectoryPoint end = Trajectory(ego, target, settings_).at(settings_.step_s);
+  const double gap_m = gaps.front_gap_m + leader_mps * settings_.step_s - (end.s_m - ego.s_m);
+  const double speed_mps = target.set_point_mps;
   const double closing_mps = std::max(0.0, speed_mps - leader_mps);
   const MopRewardSettings& reward = settings_.mop_reward;
   const double headway_m = reward.headway_s * speed_mps + reward.standstill_gap_m;
-  if (closing_mps == 0.0 && speed_mps <= ego.set_point_mps)
-    return gap_m >= reward.near_low * headway_m;
-  const double ahead_s = speed_mps > ego.set_point_mps ? kIncreaseHolds_s : 0.0;
-  return gap_m - closing_mps * ahead_s >=
-         headway_m + braking_way_m(closing_mps, kComfortBraking_mps2);
+  const double braking_m = braking_way_m(closing_mps, kComfortBraking_mps2);
+  if (speed_mps <= ego.set_point_mps) return gap_m >= reward.near_low * headway_m + braking_m;
+  return gap_m >= headway_m + braking_m + closing_mps * kIncreaseHolds_s;
+}
+
+// From now on the leader brakes hard, and from the next step on the ego as hard as its actions can.
+bool RuleBasedMop::survives_hard_braking(double gap_m, double leader_mps, Ego ego,
+                                         Target target) const {
+  const double step_s = settings_.step_s;
+  while (true) {
+    const double leader_way_m =
+        leader_mps > kHardBraking_mps2 * step_s
+            ? (leader_mps - kHardBraking_mps2 * step_s / 2) * step_s
+            : braking_way_m(leader_mps, kHardBraking_mps2);
+    leader_mps = std::max(0.0, leader_mps - kHardBraking_mps2 * step_s);
+    const TrajectoryPoint end = Trajectory(ego, target, settings_).at(step_s);
+    gap_m += leader_way_m - (end.s_m - ego.s_m);
+    if (gap_m < kStopGap_m) return false;
+    if (end.speed_mps == 0.0 || end.speed_mps <= leader_mps) return true;
+    ego.s_m = end.s_m;
+    ego.speed_mps = end.speed_mps;
+    ego.set_point_mps = target.set_point_mps;
+    target = target_for({0, 0}, ego, settings_);
+  }
 }
 
 RuleBasedBp::RuleBasedBp(const DrivingSettings& settings) : settings_(settings), lanes_(settings) {}
@@ -135,11 +147,14 @@ void RuleBasedBp::begin_episode(std::uint64_t) { goal_lane_ = -1; }
 Command RuleBasedBp::decide(const Situation& situation) {
   const Scene& scene = situation.scene;
   const int lane = lanes_.lane_at(scene.ego.d_m);
-  // Arrived, or pushed out of reach, or out of room.
+  // Arrived, or out of reach, or out of room.
   if (goal_lane_ >= 0 &&
       (std::abs(goal_lane_ - lane) != 1 || !has_room(scene, goal_lane_, kGoOnShare)))
     goal_lane_ = -1;
-  if (goal_lane_ < 0) goal_lane_ = better_lane(scene, lane);
+  // One change is over before another begins.
+  const bool settled =
+      std::abs(scene.ego.d_m - lanes_.lane_centre_m(lane)) <= lanes_.corridor_width_m();
+  if (goal_lane_ < 0 && settled) goal_lane_ = better_lane(scene, lane);
   if (goal_lane_ < 0) return Command::kKeep;
   return goal_lane_ > lane ? Command::kLeft : Command::kRight;
 }

@@ -40,6 +40,7 @@ class RuleBasedMop : public MotionPlanner {
   int speed_change(const Situation& situation, int corridor_change) const;
   // Whether a step towards `target` keeps a safe distance to the leader of these gaps.
   bool keeps_distance(const CorridorGaps& gaps, const Ego& ego, const Target& target) const;
+  bool survives_hard_braking(double gap_m, double leader_mps, Ego ego, Target target) const;
 
   DrivingSettings settings_;
   Lanes lanes_;

@@ -58,17 +58,6 @@ SumoWorld::SumoWorld(const WorldSettings& settings, std::filesystem::path networ
     : settings_(settings), network_(std::move(network)), vehicle_types_(std::move(vehicle_types)) {
   require_file(network_);
   require_file(vehicle_types_);
-  const Traffic traffic(TrafficScenario{settings.traffic, settings.road, settings.ego, 1.0, {}}, 0);
-  const double needed_m = traffic.start().s_m + settings.traffic.window_m +
-                          settings.simulation.episode_steps * settings.simulation.step_s *
-                              settings.road.speed_limit_mps;
-  if (settings.road.length_m < needed_m) {
-    throw Failure(
-        "road.length_m = {} is too short: {} steps of {} s at the speed limit, and the traffic's "
-        "window at both ends, need {:.0f}",
-        settings.road.length_m, settings.simulation.episode_steps, settings.simulation.step_s,
-        needed_m);
-  }
   CORRIDOR_CHECK(!world_exists.exchange(true), "libsumo holds one simulation a process");
 }
 
@@ -142,15 +131,15 @@ StepResult SumoWorld::finish_step(const driving::Ego& ego_after) {
   return result;
 }
 
+// SUMO's lateral speed is exactly the last step's displacement over its duration.
 void SumoWorld::read_others() {
   for (Vehicle& vehicle : scene_.others) {
     const std::string id = sumo_id(vehicle.id);
     const libsumo::TraCIPosition position = SumoVehicle::getPosition(id);
-    const double d_m = position.y - right_edge_y_m_;
     vehicle.s_m = position.x;
-    vehicle.lateral_speed_mps = (d_m - vehicle.d_m) / settings_.simulation.step_s;
-    vehicle.d_m = d_m;
+    vehicle.d_m = position.y - right_edge_y_m_;
     vehicle.speed_mps = SumoVehicle::getSpeed(id);
+    vehicle.lateral_speed_mps = SumoVehicle::getLateralSpeed(id);
   }
 }
 

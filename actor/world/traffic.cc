@@ -173,7 +173,8 @@ void Traffic::blind(const driving::Scene& scene, TrafficChange& change) {
   std::vector<BlindDriver> candidates;
   for (const Vehicle& other : scene.others) {
     const double left_m = scene.ego.d_m - other.d_m;  // the ego lies so far to its left
-    const bool near = std::abs(other.s_m - scene.ego.s_m) <= traffic.blind_range_m;
+    const bool near =
+        std::abs(other.s_m - scene.ego.s_m) <= std::min(traffic.blind_range_m, traffic.window_m);
     const bool beside = std::abs(left_m) > (other.width_m + scenario_.ego.width_m) / 2 &&
                         std::abs(left_m) < 1.5 * scenario_.road.lane_width_m;
     if (!near || !beside || blind_until_.contains(other.id)) continue;

@@ -82,9 +82,12 @@ TEST_P(InEachPhase, GoesOnBitForBitFromTheOpenEpisodeOfAnyRound) {
 TEST_P(InEachPhase, SelectionIsGreedySharedOutAndCutsTheOpenEpisodeOff) {
   FakeWorld world(config);
   PhaseRollout rollout(config, 0, world, first, {});
-  const Insert before = rollout.drive_round(weights_of(config, 0));
+  Insert before;
+  do {
+    before = rollout.drive_round(weights_of(config, 0));
+  } while (before.open.actions.empty());
   const SelectionOutcome outcome = rollout.select(weights_of(config, 1));
-  EXPECT_EQ(outcome.round, first + 1);
+  EXPECT_EQ(outcome.round, before.round + 1);
   EXPECT_EQ(outcome.episodes, 2u);  // episodes 0 and 2 of 3
   EXPECT_GT(outcome.steps, 0u);
   EXPECT_EQ(outcome, rollout.select(weights_of(config, 1)));
@@ -92,7 +95,7 @@ TEST_P(InEachPhase, SelectionIsGreedySharedOutAndCutsTheOpenEpisodeOff) {
   EXPECT_GT(after.open.episode, before.open.episode);
 
   FakeWorld fresh_world(config);
-  PhaseRollout resumed(config, 0, fresh_world, first + 1, before.open);
+  PhaseRollout resumed(config, 0, fresh_world, before.round + 1, before.open);
   resumed.select(weights_of(config, 1));
   EXPECT_EQ(resumed.drive_round(weights_of(config, 1)), after);
 }

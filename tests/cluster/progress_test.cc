@@ -23,8 +23,8 @@ TEST(MetricsLine, IsReadWithItsPlaceAndAllItsNumbers) {
   EXPECT_EQ(line->phase, "BP");
   EXPECT_EQ(line->round, 7u);
   EXPECT_EQ(line->step, 3584);
-  EXPECT_EQ(line->values, (std::map<std::string, double, std::less<>>{{"time_s", 1.25},
-                                                                      {"charts/SPS", 7000.0}}));
+  EXPECT_EQ(line->values,
+            (std::map<std::string, double, std::less<>>{{"time_s", 1.25}, {"charts/SPS", 7000.0}}));
 }
 
 TEST(MetricsLine, IsNothingWhenTornOrForeign) {
@@ -127,9 +127,9 @@ TEST_F(Progress, TakesTheSpeedFromTheLastHalfMinute) {
   progress_.on_learner(line("MoP", 0), 100.0);  // a slow start: 2 steps/s
   progress_.on_learner(line("MoP", 1), 131.0);
   progress_.on_learner(line("MoP", 9), 132.0);
-  progress_.on_learner(line("BP", 14), 150.0);
-  // From (100 s, 200 steps) on would be 56; what counts begins at (131 s, 400 steps).
-  EXPECT_NEAR(progress_.steps_per_s(), 2600.0 / 19.0, 1e-9);
+  progress_.on_learner(line("BP", 14), 162.0);
+  // What counts begins at (131 s, 400 steps).
+  EXPECT_NEAR(progress_.steps_per_s(), 2600.0 / 31.0, 1e-9);
 }
 
 TEST_F(Progress, AResumedTrainingBeginsWhereItsCheckpointIs) {
@@ -141,10 +141,10 @@ TEST_F(Progress, AResumedTrainingBeginsWhereItsCheckpointIs) {
 }
 
 TEST_F(Progress, AveragesOverTheActors) {
-  progress_.on_actor(line("MoP", 0, {{"charts/reward_per_1000", 500.0},
-                                     {"charts/collisions_per_1000", 2.0}}));
-  progress_.on_actor(line("MoP", 0, {{"charts/reward_per_1000", 700.0},
-                                     {"charts/collisions_per_1000", 1.0}}));
+  progress_.on_actor(
+      line("MoP", 0, {{"charts/reward_per_1000", 500.0}, {"charts/collisions_per_1000", 2.0}}));
+  progress_.on_actor(
+      line("MoP", 0, {{"charts/reward_per_1000", 700.0}, {"charts/collisions_per_1000", 1.0}}));
   EXPECT_THAT(progress_.details(), HasSubstr("reward 600, collisions 1.5 per 1000 steps"));
 }
 
@@ -158,21 +158,21 @@ TEST_F(Progress, ForgetsTheFiguresOfThePhaseBefore) {
 TEST_F(Progress, NamesTheSideThatTheOtherWaitsFor) {
   const auto details = [&](double for_actors, double for_weights, double for_replay) {
     TrainingProgress progress(Schedule(config()), 0, 0.0);
-    progress.on_learner(line("MoP", 0, {{"time/wait_for_actors", for_actors},
-                                        {"time/wait_for_replay", for_replay},
-                                        {"replay/samples_per_insert", 31.96}}),
+    progress.on_learner(line("MoP", 0,
+                             {{"time/wait_for_actors", for_actors},
+                              {"time/wait_for_replay", for_replay},
+                              {"replay/samples_per_insert", 31.96}}),
                         1.0);
-    progress.on_actor(line("MoP", 0, {{"time/wait_for_weights", for_weights},
-                                      {"time/wait_for_replay", 0.01}}));
+    progress.on_actor(
+        line("MoP", 0, {{"time/wait_for_weights", for_weights}, {"time/wait_for_replay", 0.01}}));
     return progress.details();
   };
   EXPECT_EQ(details(0.4, 0.03, 0.02),
             "32.0 samples per insert; learner waits 40 % for actors; actors wait 3 % for weights: "
             "the actors are the bottleneck");
   EXPECT_THAT(details(0.03, 0.4, 0.02), HasSubstr("the learner is the bottleneck"));
-  EXPECT_THAT(details(0.03, 0.04, 0.3),
-              AllOf(HasSubstr("the learner waits 30 %, actors 1 %"),
-                    HasSubstr("the replay server is the bottleneck")));
+  EXPECT_THAT(details(0.03, 0.04, 0.3), AllOf(HasSubstr("the learner waits 30 %, actors 1 %"),
+                                              HasSubstr("the replay server is the bottleneck")));
   EXPECT_THAT(details(0.03, 0.04, 0.02), HasSubstr("balanced"));
 }
 

@@ -14,9 +14,8 @@ TEST(PoissonInterval, AgreesWithPublishedTables) {
   const struct {
     std::int64_t count;
     double low, high;
-  } published[] = {{0, 0.0, 3.689},    {1, 0.0253, 5.572},   {2, 0.2422, 7.225},
-                   {10, 4.795, 18.39}, {85, 67.9, 105.1},    {100, 81.36, 121.63},
-                   {141, 118.7, 166.3}};
+  } published[] = {{0, 0.0, 3.689},   {1, 0.0253, 5.572},   {2, 0.2422, 7.225}, {10, 4.795, 18.39},
+                   {85, 67.9, 105.1}, {100, 81.36, 121.63}, {141, 118.7, 166.3}};
   for (const auto& row : published) {
     const Interval interval = poisson_interval(row.count);
     EXPECT_NEAR(interval.low, row.low, 6e-4 * row.low + 1e-4) << row.count;

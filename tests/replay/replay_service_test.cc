@@ -8,10 +8,11 @@
 #include <cmath>
 #include <limits>
 
+#include "proto/codec.h"
 #include "proto/failure.h"
-#include "proto/hash.h"
 #include "proto/random.h"
 #include "proto/run_directory.h"
+#include "tests/replay/small_run.h"
 
 namespace corridor::replay {
 namespace {
@@ -23,48 +24,6 @@ using testing::IsEmpty;
 
 constexpr ClientId kLearner{Role::kLearner, 0};
 constexpr ClientId actor(std::uint32_t index) { return {Role::kActor, index}; }
-
-constexpr int kActors = 3;
-constexpr std::uint64_t kMopRounds = 6;
-constexpr std::uint64_t kRounds = 10;
-
-// Six rounds of the MoP, four of the BP; every chunk has about 20 rows, of which 50 are kept.
-RunConfig small_config() {
-  RunConfig config;
-  config.run.seed = 5;
-  config.run.actors = kActors;
-  config.schedule.steps_per_round = 20;
-  for (DqnSettings& dqn : config.dqn) {
-    dqn.capacity = 150;
-    dqn.minimum_size = 70;
-    dqn.batch_size = 8;
-    dqn.samples_per_insert = 2.0;
-  }
-  config.dqn[0].steps = 20 * kActors * kMopRounds;
-  config.dqn[1].steps = 20 * kActors * (kRounds - kMopRounds);
-  return config;
-}
-
-// What an actor sends in a round: a function of both, of uneven length.
-Insert chunk(std::uint64_t round, std::uint32_t index) {
-  const RunConfig config = small_config();
-  const Phase phase = round < kMopRounds ? Phase::kMop : Phase::kBp;
-  const RowLayout layout{config.shape(phase).observations};
-  Insert result;
-  result.round = round;
-  result.observations = static_cast<std::uint32_t>(layout.observations);
-  const std::uint64_t count = 16 + random_below(9, 1, Purpose::kBootstrap, {round, index});
-  for (std::uint64_t i = 0; i < count * layout.stride(); ++i) {
-    result.rows.push_back(
-        static_cast<float>(random_unit(2, Purpose::kBootstrap, {round, index, i})));
-  }
-  for (std::uint64_t i = 0; i < count; ++i) {
-    const double unit = random_unit(3, Purpose::kBootstrap, {round, index, i});
-    result.priorities.push_back(static_cast<float>(std::pow(10.0, -6.0 + 9.0 * unit)));
-  }
-  result.open = {round / 2, {static_cast<std::uint8_t>(index), static_cast<std::uint8_t>(round)}};
-  return result;
-}
 
 template <typename Reply>
 Reply reply_of(const Outcome& outcome) {
@@ -325,6 +284,46 @@ TEST_F(ReplayServiceTest, StepsThatMakeNoSenseAreRefusedAndLeaveNoTrace) {
   EXPECT_EQ(saved_bytes(service), saved_bytes(untouched));
 }
 
+TEST_F(ReplayServiceTest, SpoiledMessagesAreRefusedOrAnsweredButEndNothing) {
+  ReplayService service(small_config());
+  std::vector<Batch> log;
+  run_blocks(service, 0, 3, log);
+  const Step step{log.front().keys, log.front().weights, 8, 0.4};
+  const std::vector<ReplayRequest> requests{Join{}, chunk(3, 0), OpenBlock{3}, step};
+  std::size_t answered = 0;
+  std::size_t refused = 0;
+  std::size_t malformed = 0;
+  for (std::uint64_t attempt = 0; attempt < 20'000; ++attempt) {
+    const auto draw = [&](std::uint64_t bound, std::uint64_t index) {
+      return random_below(bound, 9, Purpose::kBootstrap, {attempt, index});
+    };
+    const ReplayRequest& request = requests[attempt % requests.size()];
+    Bytes bytes = encode(request);
+    // The numbers lie in front of the payload.
+    const std::uint64_t reach =
+        draw(2, 0) == 0 ? std::min<std::size_t>(bytes.size(), 96) : bytes.size();
+    bytes[draw(reach, 1)] ^= static_cast<std::byte>(1U << draw(8, 2));
+    try {
+      ReplayRequest spoiled = decode_replay_request(bytes);
+      if (std::holds_alternative<Save>(spoiled)) continue;
+      const ClientId client = std::holds_alternative<Insert>(request) ? actor(0) : kLearner;
+      const Outcome outcome = service.handle(client, std::move(spoiled));
+      if (const auto* reply = std::get_if<ReplayReply>(&outcome)) encode(*reply);
+      (std::holds_alternative<Refused>(outcome) ? refused : answered) += 1;
+    } catch (const Malformed&) {
+      ++malformed;
+    }
+    if (!service.awaited().empty()) {
+      // Back into the open block.
+      service = ReplayService(small_config());
+      run_blocks(service, 0, 3, log);
+    }
+  }
+  EXPECT_GT(answered, 1000U);
+  EXPECT_GT(refused, 1000U);
+  EXPECT_GT(malformed, 1000U);
+}
+
 TEST_F(ReplayServiceTest, ClientsOutsideTheirRoleAreRefused) {
   ReplayService service(small_config());
   EXPECT_THAT(refusal_of(service.handle(actor(3), Join{})), HasSubstr("run.actors"));
@@ -350,6 +349,7 @@ TEST_F(ReplayServiceTest, ASaveEndsTheBlockAndFailsByARefusal) {
   ReplayService service(small_config());
   std::vector<Batch> log;
   run_blocks(service, 0, 3, log);
+  EXPECT_THAT(refusal_of(service.handle(kLearner, Save{""})), HasSubstr("no directory"));
   EXPECT_THAT(refusal_of(service.handle(kLearner, Save{(directory_ / "none").string()})),
               HasSubstr((directory_ / "none").string()));
   reply_of<Saved>(service.handle(kLearner, Save{directory_.string()}));

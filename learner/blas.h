@@ -1,0 +1,23 @@
+// Which matrix library LibTorch uses here. It decides the speed (Debian's default is up to 20 times
+// slower) and the bits of the result, so it is recorded beside each run.
+#pragma once
+
+#include <string>
+
+namespace corridor::learner {
+
+struct Blas {
+  std::string library;  // resolved path of the file that sgemm comes from
+  std::string core;     // OpenBLAS's kernel ("SkylakeX"), empty for others
+  std::string config;   // OpenBLAS's version and options, empty for others
+};
+
+// Of this process; call it after LibTorch is loaded.
+Blas blas_in_use();
+
+// What is wrong with it and what to do, in one line; empty when nothing is.
+std::string warning_about(const Blas& blas);
+
+std::string libtorch_version();
+
+}  // namespace corridor::learner

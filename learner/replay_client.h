@@ -1,0 +1,60 @@
+// The learner's side of the replay server: opens blocks, draws a block's batches and returns their
+// priorities, asks for checkpoints. One thread.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "proto/endpoint.h"
+#include "proto/messages.h"
+
+namespace corridor::learner {
+
+// Steps under way at a time. Batch i + kDepth is drawn with the priorities of batches 0 .. i,
+// whatever the timing, and the learner trains on one batch while the server draws the next.
+inline constexpr std::size_t kDepth = 2;
+
+struct Block {
+  std::uint32_t batches = 0;  // as granted
+  std::uint32_t batch_size = 0;
+  double importance_exponent = 0.0;
+};
+
+// Every function throws Failure when the server is lost, refuses, or answers something else.
+class ReplayClient {
+ public:
+  // `on_wait` is called about every millisecond while an answer is awaited.
+  ReplayClient(Client& client, std::function<void()> on_wait);
+
+  // The first message. Throws Failure unless the server goes on with block `next_round`.
+  void join(std::uint64_t next_round);
+
+  // Opens a block once all its chunks are there. Nothing when `give_up` says so first: the request
+  // then stands unanswered, and this object and its client are good for nothing more.
+  std::optional<Opened> open_block(std::uint64_t round, const std::function<bool()>& give_up);
+
+  // Draws the block's batches one after the other; `train` returns a batch's new priorities, one a
+  // row. At its return the server has all priorities.
+  void run_block(const Block& block, const std::function<std::vector<float>(const Batch&)>& train);
+
+  // Between blocks.
+  void save(const std::filesystem::path& directory);
+
+  // Seconds spent waiting for batches, so far.
+  double waited_s() const { return waited_s_; }
+
+ private:
+  void send(const ReplayRequest& request);
+  template <typename Reply>
+  Reply receive();
+  Batch receive_batch(std::size_t rows);
+
+  Client& client_;
+  std::function<void()> on_wait_;
+  double waited_s_ = 0.0;
+};
+
+}  // namespace corridor::learner

@@ -1,0 +1,91 @@
+// The learner's work: block after block, batches in, weights out; the MoP's phase, then the BP's.
+// docs/architecture.md, "Lockstep", says why the result does not depend on timing.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+
+#include "learner/checkpoint.h"
+#include "learner/publisher.h"
+#include "learner/replay_client.h"
+#include "learner/td_update.h"
+#include "proto/metrics.h"
+#include "proto/run_directory.h"
+#include "proto/schedule.h"
+#include "proto/settings.h"
+
+namespace corridor::learner {
+
+// What a training talks to; all of it outlives the training.
+struct Surroundings {
+  const RunDirectory& directory;
+  ReplayClient& replay;  // joined by `run`
+  Publisher& publisher;  // fresh
+  MetricsWriter& metrics;
+  std::function<bool()> stop_requested;
+  Duration stop_patience{1500};  // asked to stop: how long to wait for a block's last chunks
+};
+
+// The newest checkpoint's state, else the initial one. Throws Failure when the checkpoint is
+// damaged or the configuration has changed.
+LearnerState load_state(const RunConfig& config, const RunDirectory& directory);
+
+class Training {
+ public:
+  Training(const RunConfig& config, Surroundings surroundings, LearnerState state);
+
+  // Trains to the end; false when it was asked to stop before. Asked to stop, it ends the block in
+  // progress (also one that waits for its chunks, if they come within stop_patience), takes a
+  // checkpoint and returns; a resumed run then goes on bit for bit. Throws Failure when a peer is
+  // lost, an actor hangs, or training diverges.
+  bool run();
+
+ private:
+  struct BlockResult {
+    double loss = 0.0;  // means over the block's updates
+    double q_value = 0.0;
+    std::uint64_t updates = 0;  // in the phase so far
+  };
+  // Seconds since the last line of metrics.
+  struct Times {
+    double wait_for_actors_s = 0.0;
+    double wait_for_replay_s = 0.0;
+    double update_s = 0.0;
+    double publish_and_checkpoint_s = 0.0;
+  };
+
+  // Each returns false or nothing when it is to stop before it is done.
+  bool train_round(std::uint64_t round);
+  bool await_selection(std::uint64_t round);
+  std::optional<Opened> await_block(std::uint64_t round);
+
+  BlockResult train_block(std::uint64_t round, const Opened& opened);
+  void consider(const SelectionOutcome& outcome);
+  void finish_block(std::uint64_t round);
+  void begin_phase(TdState initial);
+  void checkpoint();
+  void report(std::uint64_t round, const Opened& opened, const BlockResult& result);
+  void delay(std::uint64_t round) const;
+
+  const DqnSettings& dqn() const { return config_.phase(phase_); }
+
+  const RunConfig config_;
+  const Schedule schedule_;
+  Surroundings around_;
+
+  LearnerState state_;  // but for state_.td, which td_ holds
+  Phase phase_;         // in progress
+  std::unique_ptr<TdUpdate> td_;
+  std::uint64_t checkpointed_;  // next_round of the newest checkpoint
+
+  std::optional<SelectionOutcome> selected_;  // in this round
+  double score_ = 0.0;                        // of `selected_`
+  Times times_;
+  std::int64_t steps_since_report_ = 0;
+  std::chrono::steady_clock::time_point reported_;
+};
+
+}  // namespace corridor::learner

@@ -1,0 +1,270 @@
+#include "actor/world/sumo_world.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <sstream>
+
+#include "proto/failure.h"
+#include "proto/hash.h"
+#include "scenarios/sumo_files.h"
+
+namespace corridor::world {
+namespace {
+
+namespace fs = std::filesystem;
+using driving::Scene;
+using driving::Vehicle;
+using testing::HasSubstr;
+
+class TemporaryDirectory {
+ public:
+  TemporaryDirectory() {
+    std::string name = fs::temp_directory_path() / "corridor-world-XXXXXX";
+    if (mkdtemp(name.data()) == nullptr) throw Failure("mkdtemp failed");
+    path_ = name;
+  }
+  ~TemporaryDirectory() { fs::remove_all(path_); }
+  const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+};
+
+class SumoWorldTest : public testing::Test {
+ protected:
+  SumoWorldTest() { scenarios::write_sumo_files(config_, directory_.path()); }
+
+  fs::path network() const { return directory_.path() / "road.net.xml"; }
+  fs::path types() const { return directory_.path() / "traffic.rou.xml"; }
+  SumoWorld make() const { return SumoWorld(world_settings(config_), network(), types()); }
+
+  // An ego that weaves over all lanes at changing speeds.
+  driving::Trajectory weave(const Scene& scene, int step) const {
+    const driving::Target target{1 + (step / 7 * 4) % 13, 8.0 + (step / 11) % 5};
+    return {scene.ego, target, driving_settings(config_)};
+  }
+
+  // Drives on through collisions.
+  std::uint64_t drive(SumoWorld& world, std::uint64_t seed, EgoDriver driver, int steps) const {
+    Hash hash;
+    const auto add = [&](const Scene& scene) {
+      const driving::Ego& ego = scene.ego;
+      for (const double value : {ego.s_m, ego.d_m, ego.speed_mps, ego.lateral_speed_mps}) {
+        hash.add_value(value);
+      }
+      for (const Vehicle& other : scene.others) {
+        hash.add_value(other.id);
+        for (const double value : {other.s_m, other.d_m, other.speed_mps, other.lateral_speed_mps,
+                                   other.length_m, other.width_m}) {
+          hash.add_value(value);
+        }
+      }
+    };
+    Scene scene = world.begin({seed, driver, {}});
+    add(scene);
+    for (int step = 0; step < steps; ++step) {
+      scene = driver == EgoDriver::kWorld ? world.step_by_world().scene
+                                          : world.step(weave(scene, step)).scene;
+      add(scene);
+    }
+    return hash.value();
+  }
+
+  TemporaryDirectory directory_;
+  RunConfig config_;
+};
+
+// Run by the test below, in a process of its own.
+TEST_F(SumoWorldTest, DISABLED_PrintsWhatItDrove) {
+  SumoWorld world = make();
+  for (const std::uint64_t seed : {11, 12}) {
+    std::printf("drove %016lx %016lx\n", drive(world, seed, EgoDriver::kPlanner, 300),
+                drive(world, seed, EgoDriver::kWorld, 300));
+  }
+}
+
+std::string drive_in_another_process() {
+  const std::string command = fs::read_symlink("/proc/self/exe").string() +
+                              " --gtest_also_run_disabled_tests"
+                              " --gtest_filter=SumoWorldTest.DISABLED_PrintsWhatItDrove";
+  FILE* pipe = popen(command.c_str(), "r");
+  std::string text;
+  char line[256];
+  while (std::fgets(line, sizeof line, pipe) != nullptr) {
+    if (std::string_view(line).starts_with("drove")) text += line;
+  }
+  EXPECT_EQ(pclose(pipe), 0);
+  return text;
+}
+
+TEST_F(SumoWorldTest, DrivesEqualEpisodesBitForBitInAnyProcessAndAfterAnyOthers) {
+  const std::string elsewhere = drive_in_another_process();
+  SumoWorld world = make();
+  drive(world, 99, EgoDriver::kWorld, 120);
+  drive(world, 98, EgoDriver::kPlanner, 350);
+  world.end();
+  std::string here;
+  for (const std::uint64_t seed : {11, 12}) {
+    const std::uint64_t by_world = drive(world, seed, EgoDriver::kWorld, 300);
+    drive(world, 97, EgoDriver::kPlanner, 20);
+    const std::uint64_t by_planner = drive(world, seed, EgoDriver::kPlanner, 300);
+    here += fmt::format("drove {:016x} {:016x}\n", by_planner, by_world);
+  }
+  EXPECT_EQ(here, elsewhere);
+}
+
+TEST_F(SumoWorldTest, DrivesOtherEpisodesForOtherSeeds) {
+  SumoWorld world = make();
+  EXPECT_NE(drive(world, 1, EgoDriver::kWorld, 50), drive(world, 2, EgoDriver::kWorld, 50));
+}
+
+TEST_F(SumoWorldTest, PutsTheEgoExactlyWhereItsTrajectoryLeads) {
+  SumoWorld world = make();
+  Scene scene = world.begin({5, EgoDriver::kPlanner, {}});
+  for (int step = 0; step < 200; ++step) {
+    const driving::Trajectory trajectory = weave(scene, step);
+    const driving::TrajectoryPoint point = trajectory.at(config_.simulation.step_s);
+    scene = world.step(trajectory).scene;
+    EXPECT_EQ(scene.ego.s_m, point.s_m);
+    EXPECT_EQ(scene.ego.d_m, point.d_m);
+    EXPECT_EQ(scene.ego.speed_mps, point.speed_mps);
+    EXPECT_EQ(scene.ego.acceleration_mps2, point.acceleration_mps2);
+    EXPECT_EQ(scene.ego.set_point_mps, trajectory.target().set_point_mps);
+  }
+}
+
+TEST_F(SumoWorldTest, ShowsEveryoneOnTheRoadWithinTheWindowAscendingById) {
+  SumoWorld world = make();
+  Scene scene = world.begin({6, EgoDriver::kWorld, {}});
+  double others = 0.0;
+  for (int step = 0; step < 300; ++step) {
+    scene = world.step_by_world().scene;
+    others += static_cast<double>(scene.others.size());
+    EXPECT_LE(scene.others.size(), 15u);
+    int last_id = 0;
+    for (const Vehicle& vehicle : scene.others) {
+      EXPECT_GT(vehicle.id, last_id);
+      last_id = vehicle.id;
+      EXPECT_LE(std::abs(vehicle.s_m - scene.ego.s_m), 125.0);
+      EXPECT_GE(vehicle.d_m, vehicle.width_m / 2 - 0.01);
+      EXPECT_LE(vehicle.d_m, 9.6 - vehicle.width_m / 2 + 0.01);
+      EXPECT_GE(vehicle.speed_mps, 0.0);
+    }
+  }
+  EXPECT_GE(others / 300, 12.5);
+}
+
+TEST_F(SumoWorldTest, ShowsEachVehicleMovedByItsSpeedsOverTheLastStep) {
+  SumoWorld world = make();
+  Scene before = world.begin({7, EgoDriver::kPlanner, {}});
+  int sideways = 0;
+  for (int step = 0; step < 300; ++step) {
+    const Scene after = world.step(weave(before, step)).scene;
+    for (const Vehicle& now : after.others) {
+      for (const Vehicle& then : before.others) {
+        if (then.id != now.id) continue;
+        EXPECT_NEAR(now.s_m - then.s_m, now.speed_mps, 1e-6);
+        EXPECT_NEAR(now.d_m - then.d_m, now.lateral_speed_mps, 1e-6);
+        sideways += std::abs(now.lateral_speed_mps) > 0.5 ? 1 : 0;
+      }
+    }
+    before = after;
+  }
+  EXPECT_GT(sideways, 50);
+}
+
+TEST_F(SumoWorldTest, TrafficSeesTheEgoAndBrakesBehindIt) {
+  config_.traffic.blind_rate_per_s = 0.0;
+  SumoWorld world = make();
+  Scene scene = world.begin({8, EgoDriver::kPlanner, {}});
+  for (int step = 0; step < 200; ++step) {
+    const int middle = 7;
+    const StepResult result = world.step({scene.ego, {middle, 4.0}, driving_settings(config_)});
+    // While the ego still changes lanes it may cut somebody off.
+    if (step > 10) EXPECT_FALSE(result.collision) << "step " << step;
+    scene = result.scene;
+  }
+}
+
+TEST_F(SumoWorldTest, ReportsTheEgosCollisionWithAStandingLeader) {
+  config_.traffic.slow_speed_factor = 0.2;
+  config_.traffic.slow_share = 1.0;
+  config_.traffic.truck_share = 0.0;
+  SumoWorld world = make();
+  Scene scene = world.begin({9, EgoDriver::kPlanner, {}});
+  std::optional<driving::Collision> collision;
+  for (int step = 0; step < 200 && !collision; ++step) {
+    const StepResult result = world.step({scene.ego, {7, 13.8}, driving_settings(config_)});
+    collision = result.collision;
+    scene = result.scene;
+  }
+  ASSERT_TRUE(collision);
+  EXPECT_EQ(collision->kind, driving::CollisionKind::kRearEnding);
+}
+
+TEST_F(SumoWorldTest, DrivesTheEgoItselfFasterThanItsTrafficAndOverTheLanes) {
+  SumoWorld world = make();
+  Scene scene = world.begin({10, EgoDriver::kWorld, {}});
+  const double start_s_m = scene.ego.s_m;
+  std::array<int, 3> lanes = {};
+  for (int step = 0; step < 300; ++step) {
+    const Scene after = world.step_by_world().scene;
+    EXPECT_NEAR(after.ego.s_m - scene.ego.s_m, after.ego.speed_mps, 1e-6);
+    EXPECT_NEAR(after.ego.speed_mps - scene.ego.speed_mps, after.ego.acceleration_mps2, 1e-9);
+    EXPECT_EQ(after.ego.set_point_mps, 0.0);
+    ++lanes[static_cast<std::size_t>(after.ego.d_m / 3.2)];
+    scene = after;
+  }
+  EXPECT_GT(scene.ego.s_m - start_s_m, 300 * 9.0);
+  EXPECT_GE(std::count_if(lanes.begin(), lanes.end(), [](int steps) { return steps > 0; }), 2);
+}
+
+TEST_F(SumoWorldTest, WritesSumosRecordOfAnEpisode) {
+  const fs::path record = directory_.path() / "fcd.xml";
+  SumoWorld world = make();
+  world.begin({3, EgoDriver::kWorld, record});
+  for (int step = 0; step < 20; ++step) world.step_by_world();
+  world.end();
+  std::ifstream file(record);
+  std::stringstream text;
+  text << file.rdbuf();
+  EXPECT_THAT(text.str(), HasSubstr("<vehicle id=\"ego\""));
+  EXPECT_THAT(text.str(), HasSubstr("posLat="));
+  EXPECT_THAT(text.str(), HasSubstr("<timestep time=\"19.00"));
+  EXPECT_THAT(text.str(), HasSubstr("</fcd-export>"));
+}
+
+TEST_F(SumoWorldTest, SaysWhichFileIsMissing) {
+  try {
+    SumoWorld world(world_settings(config_), directory_.path() / "nowhere.net.xml", types());
+    FAIL();
+  } catch (const Failure& failure) {
+    EXPECT_THAT(failure.what(), HasSubstr("nowhere.net.xml"));
+  }
+}
+
+TEST_F(SumoWorldTest, SaysWhichFilesSumoRefuses) {
+  std::ofstream(network()) << "<net version=\"1.9\"><edge";
+  SumoWorld world = make();
+  try {
+    world.begin({});
+    FAIL();
+  } catch (const Failure& failure) {
+    EXPECT_THAT(failure.what(), HasSubstr(network().string()));
+  }
+}
+
+TEST_F(SumoWorldTest, IsTheOnlyOneInItsProcess) {
+  const SumoWorld world = make();
+  EXPECT_DEATH(make(), "one simulation a process");
+}
+
+}  // namespace
+}  // namespace corridor::world

@@ -1,0 +1,48 @@
+#include "cluster/check.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "proto/failure.h"
+#include "proto/run_config.h"
+#include "proto/run_directory.h"
+#include "tests/support/temporary_directory.h"
+
+namespace corridor::cluster {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+TEST(Check, SaysWhatAScenarioComesTo) {
+  RunConfig config;
+  config.dqn[0].capacity = 1'000'000;
+  // 28 observations: 59 floats a row.
+  EXPECT_THAT(summary(config),
+              AllOf(HasSubstr("3 lanes of 3.2 m, 20.0 km, 50 km/h"),
+                    HasSubstr("1,000,000 steps in 1,954 rounds; 28 observations, 9 actions"),
+                    HasSubstr("replay of 1,000,000 rows, 225 MiB")));
+}
+
+TEST(Check, AcceptsAScenarioThatNetconvertAcceptsAndLeavesNothing) {
+  const testing_support::TemporaryDirectory temporary;
+  const auto file = temporary.path() / "scenario.toml";
+  write_file(file, to_toml(RunConfig()));
+  const auto before = std::filesystem::current_path();
+  setenv("TMPDIR", temporary.path().c_str(), 1);
+  testing::internal::CaptureStdout();
+  EXPECT_EQ(check(file), 0);
+  unsetenv("TMPDIR");
+  EXPECT_THAT(testing::internal::GetCapturedStdout(), HasSubstr(file.string() + ": ok"));
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(temporary.path()), {}), 1);
+}
+
+TEST(Check, RefusesAWrongScenario) {
+  const testing_support::TemporaryDirectory temporary;
+  const auto file = temporary.path() / "scenario.toml";
+  write_file(file, "[road]\nlanes = -1\n");
+  EXPECT_THROW(check(file), Failure);
+}
+
+}  // namespace
+}  // namespace corridor::cluster

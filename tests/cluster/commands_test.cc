@@ -1,0 +1,86 @@
+#include "cluster/commands.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "proto/failure.h"
+#include "proto/program.h"
+
+namespace corridor::cluster {
+namespace {
+
+using testing::HasSubstr;
+
+struct Outcome {
+  int status = -1;
+  std::string output;
+  std::string failure;
+};
+
+Outcome run(std::vector<const char*> arguments) {
+  arguments.insert(arguments.begin(), "bin/corridor");
+  Outcome outcome;
+  testing::internal::CaptureStdout();
+  try {
+    outcome.status = run_command(static_cast<int>(arguments.size()), arguments.data());
+  } catch (const Failure& failure) {
+    outcome.failure = failure.what();
+  }
+  outcome.output = testing::internal::GetCapturedStdout();
+  return outcome;
+}
+
+constexpr const char* kCommands[] = {"train",       "resume",  "evaluate",
+                                     "fingerprint", "redrive", "check"};
+
+TEST(Commands, EveryOneHasHelpWithExamplesAndAVersion) {
+  const Outcome overview = run({"--help"});
+  EXPECT_EQ(overview.status, 0);
+  EXPECT_EQ(run({"--version"}).output, std::string(kVersion) + "\n");
+  for (const char* command : kCommands) {
+    EXPECT_THAT(overview.output, HasSubstr(command));
+    const Outcome help = run({command, "--help"});
+    EXPECT_EQ(help.status, 0) << command;
+    EXPECT_THAT(help.output, HasSubstr(std::string("Examples:\n  corridor ") + command));
+    EXPECT_EQ(run({command, "--version"}).output, std::string(kVersion) + "\n") << command;
+  }
+}
+
+TEST(Commands, AWrongCommandLineIsOneLineThatNamesWhatIsWrongAndWhereHelpIs) {
+  const std::vector<std::pair<std::vector<const char*>, const char*>> wrong = {
+      {{}, "subcommand"},
+      {{"fly"}, "subcommand"},
+      {{"train", "a.toml"}, "--run"},
+      {{"train", "--run", "x"}, "SCENARIO"},
+      {{"train", "a.toml", "--run", "x", "--actors", "two"}, "--actors"},
+      {{"train", "a.toml", "--run", "x", "--seed", "-1"}, "--seed"},
+      {{"train", "a.toml", "--run", "x", "--fast"}, "--fast"},
+      {{"evaluate", "run", "--seeds", "1,b"}, "--seeds"},
+      {{"redrive", "run"}, "EPISODE"},
+  };
+  for (const auto& [arguments, named] : wrong) {
+    const Outcome outcome = run(arguments);
+    EXPECT_THAT(outcome.failure, HasSubstr(named));
+    EXPECT_THAT(outcome.failure, HasSubstr("see bin/corridor"));
+    EXPECT_EQ(outcome.failure.find('\n'), std::string::npos) << outcome.failure;
+  }
+}
+
+TEST(Commands, OptionsMayStandBeforeTheFileTheyDoNotSwallowIt) {
+  // It gets as far as reading the file: the command line was understood.
+  for (const char* option : {"--set", "--run"}) {
+    const Outcome outcome =
+        run({"train", "--run", "/tmp/never-made", option, "run.seed=1", "/nowhere/a.toml"});
+    EXPECT_THAT(outcome.failure, HasSubstr("/nowhere/a.toml")) << option;
+  }
+}
+
+TEST(Commands, ADirectoryThatIsNoRunIsRefusedByEveryCommandThatNeedsOne) {
+  for (const char* command : {"resume", "evaluate", "fingerprint"}) {
+    EXPECT_THAT(run({command, "/nowhere"}).failure, HasSubstr("/nowhere is no run directory"));
+  }
+  EXPECT_THAT(run({"redrive", "/nowhere", "rules_1_1"}).failure, HasSubstr("no run directory"));
+}
+
+}  // namespace
+}  // namespace corridor::cluster

@@ -1,0 +1,119 @@
+#include "cluster/evaluation_table.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "proto/failure.h"
+
+namespace corridor::cluster {
+namespace {
+
+using nlohmann::json;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+json episode(int steps, double reward, int collisions) {
+  return {{"episode", 0},
+          {"steps", steps},
+          {"bp_reward", reward},
+          {"mop_reward", 0},
+          {"lane_changes", 20},
+          {"collisions", collisions},
+          {"hard_brakes", 5},
+          {"distance_m", 12.5 * steps},
+          {"lane_steps", {steps, 0, 0}}};
+}
+
+json evaluation(const std::string& planner, std::uint64_t seed) {
+  return {{"planner", planner},
+          {"seed", seed},
+          {"steps", 1500},
+          {"episodes", 2},
+          {"bp_reward_per_1000", 600.0},
+          {"collisions", 1},
+          {"collisions_by_kind",
+           {{"rear_ended", 0}, {"rear_ending", 0}, {"side_by_other", 1}, {"side_by_ego", 0}}},
+          {"lane_changes", 40},
+          {"mean_speed_kph", 45.0},
+          {"distance_km", 18.75},
+          {"per_episode", {episode(1000, 650.0, 0), episode(500, 250.0, 1)}}};
+}
+
+std::string line_with(const std::string& text, const std::string& word) {
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with(word)) return line;
+  }
+  return "";
+}
+
+TEST(EvaluationJson, HasOneObjectAResultWithTheDocumentedFieldsInOrder) {
+  const auto list = evaluation_json({parse_evaluation(evaluation("rules", 7), "a"),
+                                     parse_evaluation(evaluation("sumo", 8), "b")});
+  ASSERT_EQ(list.size(), 2u);
+  std::string keys;
+  for (const auto& [key, value] : list[0].items()) keys += key + " ";
+  EXPECT_EQ(keys,
+            "planner seed steps episodes bp_reward_per_1000 collisions collisions_by_kind "
+            "lane_changes mean_speed_kph distance_km ");
+  json expected = evaluation("sumo", 8);
+  expected.erase("per_episode");
+  EXPECT_EQ(json::parse(list[1].dump()), expected);
+}
+
+TEST(EvaluationTable, GivesSumsPer1000StepsOverAllSeedsOfAPlanner) {
+  const auto text = evaluation_table({parse_evaluation(evaluation("rules", 7), "a"),
+                                      parse_evaluation(evaluation("rules", 8), "b")},
+                                     1.0, 1);
+  const std::string row = line_with(text, "rules ");
+  // 900 of reward in 1500 steps; 2 collisions in 3000 (Poisson: 0.242 to 7.22); 80 lane changes.
+  EXPECT_THAT(row, AllOf(HasSubstr("600 ["), HasSubstr("0.67 [0.08, 2.41]"), HasSubstr("26.7 ["),
+                         HasSubstr("45.0 [45.0, 45.0]")));
+}
+
+TEST(EvaluationTable, TakesTheSpeedFromTheTimeStep) {
+  const auto text =
+      evaluation_table({parse_evaluation(evaluation("rules", 7), "a")}, /*step_s=*/0.5, 1);
+  EXPECT_THAT(line_with(text, "rules "), HasSubstr("90.0 [90.0, 90.0]"));
+}
+
+TEST(EvaluationTable, GivesKindsFiguresPerKmLaneSharesAndThePapersTable) {
+  const auto text = evaluation_table({parse_evaluation(evaluation("rules", 7), "a")}, 1.0, 1);
+  EXPECT_THAT(text, AllOf(HasSubstr("side by other"), HasSubstr("collisions/km"),
+                          HasSubstr("100 / 0 / 0"), HasSubstr("The paper's Table I"),
+                          HasSubstr("hierarchical RL             699        2.125")));
+  // 1 collision, 40 lane changes in 18.75 km; 10 hard brakes in 1500 steps.
+  EXPECT_THAT(text, AllOf(HasSubstr("0.0533"), HasSubstr("2.133"), HasSubstr("6.7")));
+}
+
+TEST(EvaluationTable, KeepsThePlannersInTheirOrder) {
+  const auto text = evaluation_table(
+      {parse_evaluation(evaluation("sumo", 7), "a"), parse_evaluation(evaluation("rules", 7), "b")},
+      1.0, 1);
+  EXPECT_LT(text.find("\nsumo"), text.find("\nrules"));
+}
+
+TEST(EvaluationFile, IsRefusedWhenAFieldIsMissingWrongOrWithoutEpisodes) {
+  json missing = evaluation("rules", 7);
+  missing.erase("lane_changes");
+  EXPECT_THAT([&] { parse_evaluation(missing, "rules_7.json"); },
+              ThrowsMessage<Failure>(
+                  AllOf(HasSubstr("rules_7.json is no evaluation"), HasSubstr("lane_changes"))));
+  json wrong = evaluation("rules", 7);
+  wrong["collisions_by_kind"]["side_by_ego"] = "many";
+  EXPECT_THROW(parse_evaluation(wrong, "x"), Failure);
+  json empty = evaluation("rules", 7);
+  empty["per_episode"] = json::array();
+  EXPECT_THROW(parse_evaluation(empty, "x"), Failure);
+  json no_steps = evaluation("rules", 7);
+  no_steps["per_episode"][0]["steps"] = 0;
+  EXPECT_THROW(parse_evaluation(no_steps, "x"), Failure);
+  EXPECT_THROW(parse_evaluation(json::array(), "x"), Failure);
+}
+
+}  // namespace
+}  // namespace corridor::cluster

@@ -1,0 +1,86 @@
+#include "cluster/evaluation.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "proto/failure.h"
+#include "proto/run_config.h"
+#include "proto/schedule.h"
+#include "proto/tensor_file.h"
+#include "tests/support/temporary_directory.h"
+
+namespace corridor::cluster {
+namespace {
+
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+class Evaluation : public testing::Test {
+ protected:
+  Evaluation() {
+    write_file(directory_.config(), to_toml(config_));
+    write_file(directory_.manifest(), "{}");
+  }
+  // As after the given number of rounds.
+  void put_checkpoint(std::uint64_t rounds_done) {
+    directory_.begin_checkpoint(rounds_done - 1);
+    directory_.commit_checkpoint(rounds_done - 1, 2);
+  }
+  std::string failure_of(EvaluateOptions options) {
+    options.run = directory_.root();
+    try {
+      evaluate(options);
+    } catch (const Failure& failure) {
+      return failure.what();
+    }
+    return "no failure";
+  }
+
+  testing_support::TemporaryDirectory temporary_;
+  RunDirectory directory_ = RunDirectory::create(temporary_.path() / "run");
+  RunConfig config_;
+};
+
+TEST_F(Evaluation, PlannersWithoutLearnedPartsNeedNoCheckpoint) {
+  EXPECT_NO_THROW(check_can_drive("rules", directory_, config_));
+  EXPECT_NO_THROW(check_can_drive("sumo", directory_, config_));
+  for (const char* planner : {"hierarchical", "rules+mop", "bp+rules"}) {
+    EXPECT_THAT([&] { check_can_drive(planner, directory_, config_); },
+                ThrowsMessage<Failure>(HasSubstr("no checkpoint yet")));
+  }
+}
+
+TEST_F(Evaluation, PlannersWithALearnedBpWaitForItsPhase) {
+  const std::uint64_t mop_rounds = Schedule(config_).rounds_of(Phase::kMop);
+  put_checkpoint(mop_rounds);
+  EXPECT_NO_THROW(check_can_drive("rules+mop", directory_, config_));
+  EXPECT_THAT([&] { check_can_drive("hierarchical", directory_, config_); },
+              ThrowsMessage<Failure>(HasSubstr("has trained the MoP only")));
+  put_checkpoint(mop_rounds + 1);
+  EXPECT_NO_THROW(check_can_drive("hierarchical", directory_, config_));
+  EXPECT_NO_THROW(check_can_drive("bp+rules", directory_, config_));
+}
+
+TEST_F(Evaluation, WrongOptionsAreRefusedBeforeAnythingIsDriven) {
+  EXPECT_THAT(failure_of({.planners = {"human"}}), HasSubstr("no planner 'human'"));
+  EXPECT_THAT(failure_of({.planners = {"rules", "rules"}}), HasSubstr("rules is given twice"));
+  EXPECT_THAT(failure_of({.planners = {"rules"}, .seeds = {5, 6, 5}}),
+              HasSubstr("5 is given twice"));
+  EXPECT_THAT(failure_of({.planners = {"rules"}, .steps = 0}), HasSubstr("--steps 0"));
+  EXPECT_THAT(failure_of({.planners = {"rules"}, .jobs = 0}), HasSubstr("--jobs 0"));
+  EXPECT_THAT(failure_of({.planners = {"rules"}, .json = "/nowhere/table.json"}),
+              HasSubstr("cannot write /nowhere/table.json"));
+  EXPECT_THAT(failure_of({}), HasSubstr("no checkpoint yet"));
+}
+
+TEST_F(Evaluation, AnEpisodeIsFoundByFileOrByName) {
+  const auto file = directory_.episodes() / "rules+mop_1001_3.json";
+  write_file(file, "{}");
+  EXPECT_EQ(find_episode(directory_, "rules+mop_1001_3"), file);
+  EXPECT_EQ(find_episode(directory_, file.string()), file);
+  EXPECT_THAT([&] { find_episode(directory_, "rules_1_1"); },
+              ThrowsMessage<Failure>(HasSubstr(directory_.episodes().string())));
+}
+
+}  // namespace
+}  // namespace corridor::cluster

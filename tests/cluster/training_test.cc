@@ -1,0 +1,93 @@
+#include "cluster/training.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "cluster/run_lock.h"
+#include "proto/failure.h"
+#include "proto/run_config.h"
+#include "proto/run_directory.h"
+#include "proto/schedule.h"
+#include "tests/support/temporary_directory.h"
+
+namespace corridor::cluster {
+namespace {
+
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+class Training : public testing::Test {
+ protected:
+  Training() { write_file(scenario_, to_toml(RunConfig())); }
+
+  testing_support::TemporaryDirectory temporary_;
+  std::filesystem::path scenario_ = temporary_.path() / "scenario.toml";
+  std::filesystem::path run_ = temporary_.path() / "run";
+};
+
+TEST_F(Training, AWrongScenarioOrOverrideLeavesNoRunDirectory) {
+  EXPECT_THROW(train({.scenario = temporary_.path() / "missing.toml", .run = run_}, "corridor"),
+               Failure);
+  EXPECT_THROW(train({.scenario = scenario_, .run = run_, .settings = {"mop.stops=3"}}, "corridor"),
+               Failure);
+  EXPECT_THROW(train({.scenario = scenario_, .run = run_, .actors = 0}, "corridor"), Failure);
+  EXPECT_FALSE(std::filesystem::exists(run_));
+}
+
+TEST_F(Training, WithoutSumoNoRunDirectoryIsLeft) {
+  const std::string path = getenv("PATH");
+  setenv("PATH", "/nowhere", 1);
+  EXPECT_THAT([&] { train({.scenario = scenario_, .run = run_}, "corridor"); },
+              ThrowsMessage<Failure>(HasSubstr("netconvert")));
+  setenv("PATH", path.c_str(), 1);
+  EXPECT_FALSE(std::filesystem::exists(run_));
+}
+
+TEST_F(Training, ARunDirectoryThatExistsIsRefusedAndNotTouched) {
+  std::filesystem::create_directory(run_);
+  write_file(run_ / "precious", "content");
+  EXPECT_THAT([&] { train({.scenario = scenario_, .run = run_}, "corridor"); },
+              ThrowsMessage<Failure>(HasSubstr("exists already")));
+  EXPECT_EQ(read_file(run_ / "precious"), "content");
+}
+
+// A run directory as after training, without the training.
+RunDirectory make_run(const std::filesystem::path& root, std::uint64_t rounds_done) {
+  RunDirectory directory = RunDirectory::create(root);
+  write_file(directory.config(), to_toml(RunConfig()));
+  write_file(directory.manifest(), R"({"run_id": "0123456789abcdef0123456789abcdef"})");
+  directory.begin_checkpoint(rounds_done - 1);
+  directory.commit_checkpoint(rounds_done - 1, 2);
+  return directory;
+}
+
+TEST_F(Training, ACompleteRunIsNotResumedAndThatIsNoError) {
+  make_run(run_, Schedule(RunConfig()).rounds());
+  testing::internal::CaptureStdout();
+  EXPECT_EQ(resume(run_, "bin/corridor"), 0);
+  EXPECT_THAT(testing::internal::GetCapturedStdout(),
+              testing::AllOf(HasSubstr("is complete"),
+                             HasSubstr("bin/corridor evaluate " + run_.string())));
+}
+
+TEST_F(Training, ARunThatIsGoingOnIsNotResumed) {
+  const RunDirectory directory = make_run(run_, 1);
+  const RunLock lock(directory);
+  EXPECT_THAT([&] { resume(run_, "corridor"); }, ThrowsMessage<Failure>(HasSubstr("is going on")));
+}
+
+TEST_F(Training, ResumeSaysWhereItGoesOnAndWhatItRepeats) {
+  const RunDirectory directory = make_run(run_, 5);
+  write_file(directory.metrics("learner"), R"({"phase":"MoP","round":6,"step":3584})"
+                                           "\n");
+  // The programs do not lie beside this test: it ends where it would start them.
+  testing::internal::CaptureStdout();
+  EXPECT_THAT([&] { resume(run_, "corridor"); },
+              ThrowsMessage<Failure>(HasSubstr("cannot start replay")));
+  EXPECT_THAT(testing::internal::GetCapturedStdout(),
+              HasSubstr("goes on from the checkpoint of: MoP, 5 of 2735 rounds, 2,560 of 1,400,320 "
+                        "steps; 1,024 steps after it are repeated"));
+}
+
+}  // namespace
+}  // namespace corridor::cluster

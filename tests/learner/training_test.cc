@@ -1,0 +1,187 @@
+#include "learner/training.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "learner/q_network.h"
+#include "proto/failure.h"
+#include "proto/tensor_file.h"
+#include "tests/learner/small_run.h"
+#include "tests/support/temporary_directory.h"
+
+namespace corridor::learner {
+namespace {
+
+using testing::HasSubstr;
+using testing::Key;
+using testing::UnorderedElementsAre;
+
+struct Place {
+  testing_support::TemporaryDirectory temporary;
+  RunDirectory directory = RunDirectory::create(temporary.path() / "run");
+
+  TensorFile newest(const char* file) const {
+    return read_tensors(directory.newest_checkpoint().value() / file);
+  }
+  LearnerState state() const { return load_state(small_config(), directory); }
+};
+
+void expect_same_end(const Place& a, const Place& b) {
+  EXPECT_EQ(a.directory.newest_checkpoint()->filename(),
+            b.directory.newest_checkpoint()->filename());
+  EXPECT_TRUE(a.newest("learner.safetensors") == b.newest("learner.safetensors"));
+  EXPECT_TRUE(a.newest("replay.safetensors") == b.newest("replay.safetensors"));
+}
+
+TEST(Training, TrainsBothPhasesToTheEnd) {
+  Place place;
+  SmallRun run(small_config(), place.directory);
+  EXPECT_TRUE(run.run());
+
+  const LearnerState end = place.state();
+  EXPECT_EQ(end.next_round, kMopRounds + kBpRounds);
+  EXPECT_GT(end.td.updates, 10u);
+  // The actors got what they asked for: the versions of Schedule::weights_version.
+  EXPECT_THAT(run.weights, UnorderedElementsAre(Key(0), Key(1), Key(2), Key(3), Key(4), Key(6),
+                                                Key(7), Key(8), Key(9)));
+  const LearnerState start = initial_state(small_config());
+  EXPECT_EQ(run.weights.at(0), start.published[0]);
+  EXPECT_NE(run.weights.at(4).mop, start.published[0].mop);
+  EXPECT_EQ(run.weights.at(4).bp, start.published[0].bp);
+  EXPECT_NE(run.weights.at(9).bp, start.published[0].bp);
+}
+
+TEST(Training, FreezesTheBestMopForTheBpsPhase) {
+  Place place;
+  const RunConfig config = small_config();
+  const Schedule schedule(config);
+  SmallRun run(config, place.directory);
+  run.run();
+  std::uint64_t best_round = 0;
+  double best = -1e9;
+  for (std::uint64_t round = 0; round < kMopRounds; ++round) {
+    if (!schedule.selects_in(round)) continue;
+    double reward = 0.0;
+    for (std::uint32_t actor = 0; actor < kActors; ++actor) {
+      reward += made_up_outcome(round, actor).reward;  // collisions are the same in each round
+    }
+    if (reward > best) best_round = round;
+    best = std::max(best, reward);
+  }
+  const std::vector<float>& expected = run.weights.at(schedule.weights_version(best_round)).mop;
+  for (std::uint64_t version = kMopRounds; version <= 9; ++version) {
+    EXPECT_EQ(run.weights.at(version).mop, expected) << version;
+  }
+  EXPECT_EQ(place.newest("learner.safetensors").get<float>("mop", "file"), expected);
+}
+
+TEST(Training, GivesTheSameBitsInEachRun) {
+  Place one, two;
+  RunConfig slowed = small_config();
+  slowed.run.delay_ms_max = 5.0;
+  SmallRun(small_config(), one.directory).run();
+  SmallRun(slowed, two.directory).run();
+  expect_same_end(one, two);
+}
+
+TEST(Training, GoesOnBitForBitAfterAStopInAnyRound) {
+  Place whole;
+  SmallRun(small_config(), whole.directory).run();
+  for (const std::uint64_t version : {0, 1, 3, 4, 6, 7, 9}) {
+    Place stopped;
+    {
+      SmallRun first(small_config(), stopped.directory);
+      first.stop_at_version = version;
+      first.run();
+    }
+    EXPECT_TRUE(SmallRun(small_config(), stopped.directory).run());
+    expect_same_end(whole, stopped);
+  }
+}
+
+TEST(Training, ChecksPointWhatIsDoneWhenAskedToStopBetweenBlocks) {
+  Place place;
+  SmallRun run(small_config(), place.directory);
+  run.stop_at_version = 3;
+  EXPECT_FALSE(run.run());
+  const LearnerState state = place.state();
+  EXPECT_GE(state.next_round, 3u);
+  EXPECT_LT(state.next_round, kMopRounds + kBpRounds);
+}
+
+TEST(Training, StopsWithoutACheckpointWhenTheActorsHaveGone) {
+  Place whole, left;
+  SmallRun(small_config(), whole.directory).run();
+  SmallRun run(small_config(), left.directory);
+  run.actors_end_at = 4;  // not a round of selection
+  run.stop_at_version = 3;
+  while (run.run()) {
+  }
+  EXPECT_EQ(left.state().next_round, 3u);  // the scheduled one
+  EXPECT_TRUE(SmallRun(small_config(), left.directory).run());
+  expect_same_end(whole, left);
+}
+
+TEST(Training, DoesNothingMoreWhenAllIsDone) {
+  Place place;
+  SmallRun(small_config(), place.directory).run();
+  const LearnerState end = place.state();
+  EXPECT_TRUE(SmallRun(small_config(), place.directory).run());
+  EXPECT_EQ(place.state(), end);
+}
+
+TEST(Training, WritesMetricsWithTheSelectionsScore) {
+  Place place;
+  SmallRun(small_config(), place.directory).run();
+  std::ifstream file(place.directory.metrics("learner"));
+  std::string line;
+  int scores = 0;
+  while (std::getline(file, line)) {
+    const nlohmann::json values = nlohmann::json::parse(line);
+    if (!values.contains("eval/score")) continue;
+    ++scores;
+    const auto round = values["round"].get<std::uint64_t>();
+    const double reward =
+        made_up_outcome(round, 0).reward + made_up_outcome(round, 1).reward;  // in 2000 steps
+    EXPECT_NEAR(values["eval/reward_per_1000"].get<double>(), reward / 2.0, 1e-9);
+    EXPECT_NEAR(values["eval/collisions_per_1000"].get<double>(), 0.5, 1e-9);
+    EXPECT_NEAR(values["eval/score"].get<double>(), reward / 2.0 - 25.0, 1e-9);
+    EXPECT_EQ(values["phase"], round < kMopRounds ? "MoP" : "BP");
+  }
+  EXPECT_EQ(scores, 6);  // rounds 1, 3, 5 and 7, 9, 10
+}
+
+TEST(Training, RefusesAReplayServerAtAnotherRound) {
+  Place place;
+  SmallRun(small_config(), place.directory).run();
+  Server server(fresh_address("learner"), kRunId);
+  Publisher publisher(server, kActors);
+  const std::string address = fresh_address("replay");
+  std::atomic<bool> end = false;
+  std::thread replay_server([&] {
+    replay::ReplayService service(small_config());  // at the start, without the checkpoint
+    MetricsWriter metrics(place.temporary.path() / "replay.jsonl");
+    Server replay_socket(address, kRunId);
+    replay::serve(replay_socket, service, metrics, small_config(), [&] { return end.load(); });
+  });
+  Client client(address, "replay server", {kRunId, Role::kLearner, 0, 1}, {});
+  ReplayClient replay(client, [] {});
+  MetricsWriter metrics(place.directory.metrics("learner"));
+  Training training(small_config(),
+                    {place.directory, replay, publisher, metrics, [] { return false; }},
+                    place.state());
+  try {
+    training.run();
+    ADD_FAILURE() << "no Failure";
+  } catch (const Failure& failure) {
+    EXPECT_THAT(failure.what(), HasSubstr("round 0, the learner with round 11"));
+  }
+  end = true;
+  replay_server.join();
+}
+
+}  // namespace
+}  // namespace corridor::learner

@@ -1,0 +1,170 @@
+#include "scenarios/sumo_files.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <optional>
+
+#include "proto/failure.h"
+#include "proto/run_config.h"
+#include "proto/run_directory.h"
+
+namespace corridor::scenarios {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+class SumoFiles : public testing::Test {
+ protected:
+  SumoFiles() {
+    std::string name = fs::temp_directory_path() / "corridor-scenarios-XXXXXX";
+    if (mkdtemp(name.data()) == nullptr) throw Failure("mkdtemp failed");
+    directory_ = name;
+    for (const char* variable : {"SUMO_HOME", "PATH"}) {
+      const char* value = std::getenv(variable);
+      saved_.emplace_back(variable, value ? std::optional<std::string>(value) : std::nullopt);
+    }
+  }
+  ~SumoFiles() override {
+    for (const auto& [variable, value] : saved_) {
+      value ? setenv(variable.c_str(), value->c_str(), 1) : unsetenv(variable.c_str());
+    }
+    fs::remove_all(directory_);
+  }
+
+  // A SUMO whose netconvert is this shell script.
+  void install_netconvert(const std::string& script) {
+    const fs::path program = directory_ / "sumo" / "bin" / "netconvert";
+    fs::create_directories(program.parent_path());
+    std::ofstream(program) << "#!/bin/sh\n" << script << "\n";
+    fs::permissions(program, fs::perms::owner_all);
+    setenv("SUMO_HOME", (directory_ / "sumo").c_str(), 1);
+  }
+
+  std::string failure_of(const RunConfig& config, std::chrono::milliseconds deadline) const {
+    try {
+      write_sumo_files(config, directory_ / "run", deadline);
+    } catch (const Failure& failure) {
+      return failure.what();
+    }
+    return "no failure";
+  }
+
+  fs::path directory_;
+  std::vector<std::pair<std::string, std::optional<std::string>>> saved_;
+};
+
+constexpr std::chrono::milliseconds kLong = std::chrono::seconds(60);
+
+TEST_F(SumoFiles, GiveANetworkWithTheLanesSet) {
+  RunConfig config;
+  config.road.lanes = 4;
+  config.road.lane_width_m = 3.25;
+  config.road.length_m = 1234.5;
+  config.road.speed_limit_mps = 20.5;
+  write_sumo_files(config, directory_ / "a" / "b");
+  const std::string network = read_file(directory_ / "a" / "b" / "road.net.xml");
+  EXPECT_THAT(network, HasSubstr("<edge id=\"road\""));
+  for (const char* lane : {"road_0", "road_1", "road_2", "road_3"}) {
+    EXPECT_THAT(network, HasSubstr(fmt::format("<lane id=\"{}\"", lane)));
+  }
+  EXPECT_THAT(network, Not(HasSubstr("road_4")));
+  EXPECT_THAT(network, HasSubstr("length=\"1234.5000\""));
+  EXPECT_THAT(network, HasSubstr("speed=\"20.5000\""));
+  EXPECT_THAT(network, HasSubstr("0.0000,-1.6250"));  // the left lane's centre, not rounded
+}
+
+TEST_F(SumoFiles, DescribeEveryKindWithEveryAlignment) {
+  TrafficSettings traffic;
+  traffic.speed_factor_mean = 0.7;
+  traffic.speed_factor_deviation = 0.1;
+  traffic.speed_factor_min = 0.5;
+  traffic.speed_factor_max = 1.1;
+  traffic.keep_right = 0.0;
+  EgoSettings ego;
+  ego.length_m = 4.5;
+  const std::string xml = vehicle_types_xml(traffic, ego);
+  for (const char* kind : kVehicleKinds) {
+    for (const char* alignment : kAlignments) {
+      EXPECT_THAT(xml, HasSubstr(fmt::format("<vType id=\"{}_{}\"", kind, alignment)));
+    }
+  }
+  EXPECT_THAT(xml, HasSubstr("speedFactor=\"normc(0.7,0.1,0.5,1.1)\""));
+  EXPECT_THAT(xml, HasSubstr("lcKeepRight=\"0\""));
+  EXPECT_THAT(xml, HasSubstr("<vType id=\"ego\" speedFactor=\"1\" speedDev=\"0\" length=\"4.5\""));
+  EXPECT_THAT(xml, HasSubstr("<route id=\"road\" edges=\"road\"/>"));
+}
+
+TEST_F(SumoFiles, OpenInSumo) {
+  RunConfig config;
+  write_sumo_files(config, directory_);
+  // sumo-gui reads the same configuration, but needs a display.
+  const std::string command = "sumo -c " + (directory_ / "road.sumocfg").string() +
+                              " --end 3 --no-step-log >/dev/null 2>&1";
+  EXPECT_EQ(std::system(command.c_str()), 0);
+}
+
+TEST_F(SumoFiles, TellWhatNetconvertRefuses) {
+  RunConfig config;
+  config.road.length_m = 0.0;
+  EXPECT_THAT(failure_of(config, kLong),
+              AllOf(HasSubstr("road.edg.xml"), HasSubstr("Error"), Not(HasSubstr("\n"))));
+}
+
+TEST_F(SumoFiles, TellTheFirstErrorLineAndNotTheWarnings) {
+  install_netconvert(
+      "echo 'Warning: odd'; echo 'Error: the worst' >&2; echo 'Error: more'; exit 1");
+  EXPECT_THAT(failure_of({}, kLong),
+              AllOf(HasSubstr("exit status 1"), HasSubstr("Error: the worst"),
+                    Not(HasSubstr("odd")), Not(HasSubstr("more"))));
+}
+
+TEST_F(SumoFiles, FailWhenNetconvertSucceedsWithoutANetwork) {
+  install_netconvert("exit 0");
+  EXPECT_THAT(failure_of({}, kLong), HasSubstr("road.edg.xml"));
+}
+
+TEST_F(SumoFiles, DoNotWaitForeverForNetconvert) {
+  install_netconvert("exec sleep 1000");
+  EXPECT_THAT(failure_of({}, std::chrono::milliseconds(50)), HasSubstr("50 ms"));
+}
+
+TEST_F(SumoFiles, TellHowToInstallAMissingSumo) {
+  unsetenv("SUMO_HOME");
+  setenv("PATH", directory_.c_str(), 1);
+  EXPECT_THAT(failure_of({}, kLong), AllOf(HasSubstr("netconvert"), HasSubstr("install SUMO")));
+}
+
+TEST_F(SumoFiles, TellADirectoryThatCannotBeMade) {
+  std::ofstream(directory_ / "run") << "a file";
+  EXPECT_THAT(failure_of({}, kLong), HasSubstr("run"));
+}
+
+const fs::path kScenarios = fs::path(CORRIDOR_SOURCE_DIR) / "scenarios";
+
+TEST(Scenarios, ThePapersIsWhatTheDefaultsAre) {
+  EXPECT_EQ(to_toml(load_run_config(kScenarios / "paper.toml")), to_toml(RunConfig{}));
+}
+
+TEST(Scenarios, TheSmokeTestDiffersInBudgetsOnly) {
+  const RunConfig paper = load_run_config(kScenarios / "paper.toml");
+  RunConfig smoke = load_run_config(kScenarios / "smoke.toml");
+  EXPECT_LT(smoke.phase(Phase::kMop).steps, 100'000);
+  EXPECT_LT(smoke.phase(Phase::kBp).steps, 100'000);
+  smoke.schedule = paper.schedule;
+  smoke.evaluation = paper.evaluation;
+  for (std::size_t phase = 0; phase < kPhases; ++phase) {
+    smoke.dqn[phase].steps = paper.dqn[phase].steps;
+    smoke.dqn[phase].epsilon_steps = paper.dqn[phase].epsilon_steps;
+  }
+  EXPECT_EQ(to_toml(smoke), to_toml(paper));
+}
+
+}  // namespace
+}  // namespace corridor::scenarios
