@@ -28,7 +28,9 @@ void declare_train(CLI::App& app, Arguments& arguments) {
   app.add_option("SCENARIO", options.scenario, "scenario file (TOML)")->required();
   app.add_option("--run", options.run, "run directory to create")->required();
   app.add_option("--actors", options.actors, "actor processes (run.actors)")->take_last();
-  app.add_option("--seed", options.seed, "seed of everything random (run.seed)")->take_last();
+  app.add_option("--seed", options.seed, "seed of everything random (run.seed)")
+      ->take_last()
+      ->check(CLI::NonNegativeNumber);
   app.add_option("--set", options.settings, "table.key=value: overrides the scenario; repeatable")
       ->allow_extra_args(false);
 }
@@ -48,6 +50,7 @@ void declare_evaluate(CLI::App& app, Arguments& arguments) {
   app.add_option("--steps", options.steps, "steps for each planner and seed (evaluation.steps)");
   app.add_option("--seeds", options.seeds, "evaluation seeds (evaluation.seeds)")
       ->delimiter(',')
+      ->check(CLI::NonNegativeNumber)
       ->allow_extra_args(false);
   app.add_option("--jobs", options.jobs, "processes at a time (the number of cores)");
   app.add_option("--json", options.json, "write the figures of each planner and seed to this file");

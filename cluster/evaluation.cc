@@ -68,14 +68,16 @@ class Monitor {
   }
 
   std::string details() const {
-    std::string text;
+    std::size_t done = 0;
+    std::string running;
     for (const Drive& drive : drives_) {
-      if (drive.steps == 0) continue;
-      text += fmt::format(
-          "{}{} {}: {:.0f} %", text.empty() ? "" : ", ", drive.job.planner, drive.job.seed,
+      done += drive.steps >= drive.job.steps;
+      if (drive.steps == 0 || drive.steps >= drive.job.steps) continue;
+      running += fmt::format(
+          ", {} {}: {:.0f} %", drive.job.planner, drive.job.seed,
           100.0 * static_cast<double>(drive.steps) / static_cast<double>(drive.job.steps));
     }
-    return text.empty() ? "starting" : text;
+    return fmt::format("{} of {} planners and seeds done{}", done, drives_.size(), running);
   }
 
   double start_s_;

@@ -209,7 +209,8 @@ std::string last_words(const Child& child) {
     last = line;
     is_error = names_error;
   }
-  return last.empty() ? "it wrote nothing" : last;
+  if (last.empty()) return "it wrote nothing";
+  return is_error ? last : "its last line: " + last;
 }
 
 Failure failure_of(const Ended& ended) {

@@ -194,7 +194,6 @@ std::string TrainingProgress::details() const {
   if (const auto ratio = mean("learner", "replay/samples_per_insert")) {
     append(fmt::format("{:.1f} samples per insert", *ratio));
   }
-  if (const std::string waits = waiting(); !waits.empty()) append(waits);
   return text.empty() ? "starting" : text;
 }
 
@@ -208,19 +207,25 @@ std::string TrainingProgress::waiting() const {
   const double for_replay = std::max(learner_for_replay, actors_for_replay);
 
   const double most = std::max({*for_actors, *for_weights, for_replay});
-  const char* verdict = "balanced";
+  const char* bottleneck = "none";
   if (most >= kWaitsMuch) {
-    verdict = most == for_replay     ? "the replay server is the bottleneck"
-              : most == *for_weights ? "the learner is the bottleneck"
-                                     : "the actors are the bottleneck";
+    bottleneck = most == for_replay     ? "the replay server"
+                 : most == *for_weights ? "the learner"
+                                        : "the actors";
   }
-  std::string text = fmt::format("learner waits {} for actors; actors wait {} for weights",
+  std::string text = fmt::format("waits: learner {} for actors, actors {} for weights",
                                  percent(*for_actors), percent(*for_weights));
   if (for_replay >= kWaitsMuch) {
-    text += fmt::format("; for replay the learner waits {}, actors {}", percent(learner_for_replay),
+    text += fmt::format(", learner {} and actors {} for replay", percent(learner_for_replay),
                         percent(actors_for_replay));
   }
-  return text + ": " + verdict;
+  return fmt::format("{}; bottleneck: {}", text, bottleneck);
+}
+
+std::vector<std::string> TrainingProgress::lines() const {
+  std::vector<std::string> result = {headline(), details()};
+  if (std::string waits = waiting(); !waits.empty()) result.push_back(std::move(waits));
+  return result;
 }
 
 ProgressDisplay::ProgressDisplay() : terminal_(isatty(STDOUT_FILENO) == 1) {}
@@ -235,11 +240,11 @@ void ProgressDisplay::show(const std::vector<std::string>& lines, double now_s) 
   if (!due(now_s)) return;
   last_s_ = now_s;
   if (terminal_) {
-    // Back to the first of the lines that stand there; each is then cleared and written. A line
-    // that wrapped could not be counted, so none may.
-    if (shown_ > 0) fmt::print("\x1b[{}F", shown_);
+    // Back to the first of the lines that stand there, and clear from there on. A line that wrapped
+    // could not be counted, so none may.
+    if (shown_ > 0) fmt::print("\x1b[{}F\x1b[J", shown_);
     const auto columns = static_cast<std::size_t>(terminal_columns() - 1);
-    for (const std::string& line : lines) fmt::print("\x1b[2K{}\n", line.substr(0, columns));
+    for (const std::string& line : lines) fmt::print("{}\n", line.substr(0, columns));
     shown_ = lines.size();
   } else {
     for (const std::string& line : lines) fmt::print("{}\n", line);

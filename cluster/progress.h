@@ -1,5 +1,5 @@
 // What `corridor train` shows while it waits: the processes' metrics files, read as they grow, in
-// two lines.
+// a few lines.
 #pragma once
 
 #include <cstdint>
@@ -65,8 +65,13 @@ class TrainingProgress {
 
   // "BP   [####....]  71.4 %  1,000,000 of 1,400,000 steps  7,012 steps/s  57 s left"
   std::string headline() const;
-  // "reward 612, collisions 2.1 per 1000 steps; 32.0 samples per insert; learner waits 40 % ..."
+  // "reward 612, collisions 2.1 per 1000 steps; 32.0 samples per insert"
   std::string details() const;
+  // "waits: learner 40 % for actors, actors 3 % for weights; bottleneck: the actors"; empty while
+  // unknown.
+  std::string waiting() const;
+  // All of them that say something.
+  std::vector<std::string> lines() const;
 
  private:
   // The mean of the last values of a name; those of another phase are dropped.
@@ -78,7 +83,6 @@ class TrainingProgress {
   void enter(const std::string& phase);
   void note(const char* process, const MetricsLine& line);
   std::optional<double> mean(const std::string& process, const char* name) const;
-  std::string waiting() const;
 
   Schedule schedule_;
   std::string phase_;

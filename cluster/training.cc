@@ -60,7 +60,7 @@ class Monitor {
         if (const auto line = parse_metrics_line(text)) progress_.on_actor(*line);
       }
     }
-    if (display_.due(now_s)) display_.show({progress_.headline(), progress_.details()}, now_s);
+    if (display_.due(now_s)) display_.show(progress_.lines(), now_s);
   }
 
  private:

@@ -23,8 +23,8 @@ struct Count {
 };
 
 inline constexpr std::int64_t kStepsMax = 10'000'000'000;
-// What TOML can write.
-inline constexpr std::uint64_t kSeedMax = std::numeric_limits<std::int64_t>::max();
+// TOML's largest integer less one: the largest is what the TOML library makes of still larger ones.
+inline constexpr std::uint64_t kSeedMax = std::numeric_limits<std::int64_t>::max() - 1;
 // With three corridor changes and three commands each, an action still fits a byte
 // (actor/driving/action.h).
 inline constexpr std::size_t kSpeedChangesMax = 28;

@@ -32,19 +32,19 @@ struct TrafficSettings {
   double window_m = 125.0;
   int vehicles_min = 13;  // drawn once an episode
   int vehicles_max = 15;
-  double slow_share = 0.3;  // cars with speed factor `slow_speed_factor`
+  double slow_share = 0.03;  // cars with speed factor `slow_speed_factor`
   double slow_speed_factor = 0.5;
-  double truck_share = 0.1;
+  double truck_share = 0.02;
   double truck_speed_factor = 0.58;
   // The other cars' speed factor: normal, cut off at both ends.
   double speed_factor_mean = 0.8;
   double speed_factor_deviation = 0.15;
   double speed_factor_min = 0.4;
   double speed_factor_max = 1.15;
-  double keep_right = 1.0;  // SUMO's lcKeepRight
+  double keep_right = 6.0;  // SUMO's lcKeepRight
   // Blind drivers: a neighbour of the ego that changes into its lane without looking. SUMO's own
   // drivers almost never hit the ego; those of the paper did.
-  double blind_rate_per_s = 0.03;
+  double blind_rate_per_s = 0.01;
   double blind_duration_s = 4.0;
   double blind_range_m = 15.0;  // of the ego, along the road
 };

@@ -162,11 +162,11 @@ Command RuleBasedBp::decide(const Situation& situation) {
 int RuleBasedBp::better_lane(const Scene& scene, int lane) const {
   const RulesSettings& rules = settings_.rules;
   const double slow_mps = settings_.road.speed_limit_mps - rules.slow_leader_mps;
-  const double leader_mps = leader_speed_mps(scene, lane);
-  if (leader_mps < slow_mps) {
+  const double own_mps = promise_mps(scene, lane);
+  if (own_mps < slow_mps) {
     for (const int other : {lane + 1, lane - 1}) {
       if (other < 0 || other >= lanes_.lanes()) continue;
-      if (leader_speed_mps(scene, other) >= leader_mps + rules.gain_mps &&
+      if (promise_mps(scene, other) >= own_mps + rules.gain_mps &&
           has_room(scene, other, 1.0))
         return other;
     }
@@ -174,16 +174,16 @@ int RuleBasedBp::better_lane(const Scene& scene, int lane) const {
   }
   const int right = lane - 1;
   const bool right_is_free =
-      right >= 0 && leader_speed_mps(scene, right) >= slow_mps &&
+      right >= 0 && promise_mps(scene, right) >= slow_mps &&
       lane_gaps(scene, right, settings_).front_gap_m >= rules.return_right_s * scene.ego.speed_mps;
   return right_is_free && has_room(scene, right, 1.0) ? right : -1;
 }
 
-double RuleBasedBp::leader_speed_mps(const Scene& scene, int lane) const {
+double RuleBasedBp::promise_mps(const Scene& scene, int lane) const {
   const CorridorGaps gaps = lane_gaps(scene, lane, settings_);
   const double limit_mps = settings_.road.speed_limit_mps;
-  if (gaps.front_gap_m >= std::min(settings_.rules.leader_range_m, settings_.planner.gap_range_m))
-    return limit_mps;
+  const double range_m = std::min(settings_.rules.leader_range_m, settings_.planner.gap_range_m);
+  if (gaps.front_gap_m >= range_m) return limit_mps;
   return std::min(limit_mps, scene.ego.speed_mps + gaps.front_rate_mps);
 }
 

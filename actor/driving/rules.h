@@ -18,8 +18,9 @@ class RuleBasedBp : public BehaviourPlanner {
 
  private:
   int better_lane(const Scene& scene, int lane) const;  // or -1
-  // The speed limit where no leader is in leader_range_m.
-  double leader_speed_mps(const Scene& scene, int lane) const;
+  // The speed to be expected there: from the leader's, if close, to the limit, if it is
+  // leader_range_m away.
+  double promise_mps(const Scene& scene, int lane) const;
   // At least this share of the gaps that a change to the lane needs.
   bool has_room(const Scene& scene, int lane, double share) const;
 

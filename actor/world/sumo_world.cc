@@ -41,11 +41,9 @@ void require_file(const std::filesystem::path& file) {
 
 // Calls into SUMO; what it throws becomes a Failure (its details are on standard error).
 template <typename Function>
-auto in_sumo(const char* doing, Function&& function) {
+auto in_sumo(const std::string& doing, Function&& function) {
   try {
     return function();
-  } catch (const Failure&) {
-    throw;
   } catch (const std::exception& error) {
     throw Failure("SUMO failed while {}: {}", doing, error.what());
   }
@@ -68,9 +66,10 @@ SumoWorld::~SumoWorld() {
 
 driving::Scene SumoWorld::begin(const EpisodeStart& start) {
   end();
+  in_sumo(fmt::format("loading {} and {}", network_.string(), vehicle_types_.string()),
+          [&] { Sumo::load(options(start)); });
+  running_ = true;
   return in_sumo("starting an episode", [&] {
-    Sumo::load(options(start));
-    running_ = true;
     driver_ = start.driver;
     const auto right_lane = libsumo::Lane::getShape(lane_id(0)).value;
     right_edge_y_m_ = right_lane.front().y - settings_.road.lane_width_m / 2;
@@ -86,7 +85,7 @@ StepResult SumoWorld::step(const driving::Trajectory& trajectory) {
   CORRIDOR_CHECK(running_ && driver_ == EgoDriver::kPlanner);
   return in_sumo("placing the ego and stepping", [&] {
     const driving::TrajectoryPoint point = trajectory.at(settings_.simulation.step_s);
-    // A body's width inside the road: SUMO loses a vehicle whose middle is off it.
+    // The whole body stays on the road: SUMO loses a vehicle whose middle is off it.
     const double margin_m = settings_.ego.width_m / 2;
     const double road_width_m = settings_.road.lanes * settings_.road.lane_width_m;
     const double d_m = std::clamp(point.d_m, margin_m, road_width_m - margin_m);

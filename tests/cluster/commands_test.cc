@@ -56,6 +56,7 @@ TEST(Commands, AWrongCommandLineIsOneLineThatNamesWhatIsWrongAndWhereHelpIs) {
       {{"train", "a.toml", "--run", "x", "--seed", "-1"}, "--seed"},
       {{"train", "a.toml", "--run", "x", "--fast"}, "--fast"},
       {{"evaluate", "run", "--seeds", "1,b"}, "--seeds"},
+      {{"evaluate", "run", "--seeds", "1,-2"}, "--seeds"},
       {{"redrive", "run"}, "EPISODE"},
   };
   for (const auto& [arguments, named] : wrong) {
@@ -66,13 +67,15 @@ TEST(Commands, AWrongCommandLineIsOneLineThatNamesWhatIsWrongAndWhereHelpIs) {
   }
 }
 
-TEST(Commands, OptionsMayStandBeforeTheFileTheyDoNotSwallowIt) {
-  // It gets as far as reading the file: the command line was understood.
-  for (const char* option : {"--set", "--run"}) {
-    const Outcome outcome =
-        run({"train", "--run", "/tmp/never-made", option, "run.seed=1", "/nowhere/a.toml"});
-    EXPECT_THAT(outcome.failure, HasSubstr("/nowhere/a.toml")) << option;
-  }
+TEST(Commands, OptionsMayStandBeforeTheFileAndDoNotSwallowIt) {
+  // Both get as far as reading the file: the command line was understood.
+  EXPECT_THAT(run({"train", "--run", "/nowhere/run", "--set", "run.seed=1", "--set", "run.actors=2",
+                   "/nowhere/a.toml"})
+                  .failure,
+              HasSubstr("cannot read /nowhere/a.toml"));
+  EXPECT_THAT(
+      run({"evaluate", "--seeds", "1,2", "--planners", "rules,sumo", "/nowhere/run"}).failure,
+      HasSubstr("/nowhere/run is no run directory"));
 }
 
 TEST(Commands, ADirectoryThatIsNoRunIsRefusedByEveryCommandThatNeedsOne) {

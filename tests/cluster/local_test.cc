@@ -29,6 +29,8 @@ constexpr Limits kLimits{.tick = Milliseconds(5),
 
 class Local : public testing::Test {
  protected:
+  ~Local() override { prctl(PR_SET_CHILD_SUBREAPER, 0); }  // some tests set it
+
   // A shell script that first writes its process id into <name>.pid. `exec sleep` makes the shell
   // itself the sleeper.
   ProcessPlan script(const std::string& name, const std::string& commands) const {

@@ -85,7 +85,7 @@ TEST_F(Training, ResumeSaysWhereItGoesOnAndWhatItRepeats) {
   EXPECT_THAT([&] { resume(run_, "corridor"); },
               ThrowsMessage<Failure>(HasSubstr("cannot start replay")));
   EXPECT_THAT(testing::internal::GetCapturedStdout(),
-              HasSubstr("goes on from the checkpoint of: MoP, 5 of 2735 rounds, 2,560 of 1,400,320 "
+              HasSubstr("goes on from the checkpoint of: MoP, 5 of 2736 rounds, 2,560 of 1,400,832 "
                         "steps; 1,024 steps after it are repeated"));
 }
 

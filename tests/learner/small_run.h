@@ -7,7 +7,9 @@
 #include <atomic>
 #include <chrono>
 #include <functional>
+#include <map>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 #include <variant>
@@ -96,7 +98,8 @@ class SmallRun {
   SmallRun(RunConfig config, const RunDirectory& directory)
       : config_(std::move(config)), schedule_(config_), directory_(directory) {}
 
-  // Round from which actors send nothing more, as if they had gone.
+  // Round of which actors send nothing: once its block is next, they go, and the learner is asked
+  // to stop.
   std::uint64_t actors_end_at = UINT64_MAX;
   // Asks the learner to stop once an actor has got this version.
   std::uint64_t stop_at_version = UINT64_MAX;
@@ -175,12 +178,17 @@ class SmallRun {
     if (!joined) return;
     const std::uint64_t first = std::get<Joined>(decode_replay_reply(*joined)).next_round;
     for (std::uint64_t round = first; round < schedule_.rounds(); ++round) {
-      if (round == actors_end_at) return;
-      learner.send(encode(LearnerRequest(WeightsWanted{schedule_.weights_version(round)})));
+      const bool goes = round == actors_end_at;
+      const std::uint64_t version = goes ? round : schedule_.weights_version(round);
+      learner.send(encode(LearnerRequest(WeightsWanted{version})));
       const auto body = answer(learner);
       if (!body) return;
       const Weights got = std::get<Weights>(decode_learner_reply(*body));
       note(got);
+      if (goes) {
+        stop_learner_ = true;
+        return;
+      }
       if (schedule_.selects_in(round)) {
         learner.send(encode(LearnerRequest(made_up_outcome(round, actor))));
         if (!answer(learner)) return;

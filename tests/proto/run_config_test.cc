@@ -46,7 +46,7 @@ TEST(RunConfig, KeysOfEveryTypeAreRead) {
     dueling = true
     steps = 5_000_000_000
     [evaluation]
-    seeds = [9223372036854775807, 0]
+    seeds = [9223372036854775806, 0]
     [run]
     device = "cuda"
     host = "node-1.example.org"
@@ -58,7 +58,7 @@ TEST(RunConfig, KeysOfEveryTypeAreRead) {
   EXPECT_TRUE(config.phase(Phase::kMop).dueling);
   EXPECT_FALSE(config.phase(Phase::kBp).dueling);
   EXPECT_EQ(config.phase(Phase::kMop).steps, 5'000'000'000);
-  EXPECT_EQ(config.evaluation.seeds, (std::vector<std::uint64_t>{9223372036854775807ULL, 0}));
+  EXPECT_EQ(config.evaluation.seeds, (std::vector<std::uint64_t>{9223372036854775806ULL, 0}));
   EXPECT_EQ(config.run.device, "cuda");
   EXPECT_EQ(config.run.host, "node-1.example.org");
 }
@@ -67,7 +67,7 @@ TEST(RunConfig, WhatIsWrittenIsReadEqual) {
   const RunConfig config = parse(
       "", {"traffic.blind_rate_per_s=0.1", "mop.learning_rate=3.3e-4", "bp.adam_epsilon=1e-12",
            "road.length_m=123456.789", "planner.speed_changes_mps=[-0.1, 0, 0.30000000000000004]",
-           "run.seed=9223372036854775807", "road.speed_limit_mps=20"});
+           "run.seed=9223372036854775806", "road.speed_limit_mps=20"});
   const std::string text = to_toml(config);
   const RunConfig again = parse(text);
   EXPECT_EQ(to_toml(again), text);
@@ -109,7 +109,7 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         Bad{"run.actors=2.0", "whole number"}, Bad{"run.actors=true", "whole number"},
         Bad{"run.actors=\"2\"", "whole number"}, Bad{"run.actors=[2]", "whole number"},
-        Bad{"run.actors=1025", "1 to 1024"}, Bad{"run.seed=-1", "0 to 9223372036854775807"},
+        Bad{"run.actors=1025", "1 to 1024"}, Bad{"run.seed=-1", "0 to 9223372036854775806"},
         Bad{"road.lanes=4294967299", "1 to 8"},  // 3 in 32 bits
         Bad{"mop.steps=0", "whole number"}, Bad{"mop.gamma=nan", "= nan"},
         Bad{"mop.huber_delta=inf", "= inf"}, Bad{"mop.gamma=-inf", "number"},
@@ -131,12 +131,13 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"run.actors", "must be table.key=value"}, Bad{"actors=2", "must be table.key=value"},
         Bad{"a.b.c=2", "must be table.key=value"}, Bad{"run.actors=", "not valid TOML"},
         Bad{"run.actors=[1", "not valid TOML"},
-        Bad{"run.actors=99999999999999999999", "run.actors"},
+        Bad{"run.seed=9223372036854775807", "0 to 9223372036854775806"},
+        Bad{"run.seed=99999999999999999999", "0 to 9223372036854775806"},
         Bad{"run.actors=1\n[road]\nlanes=2", "must be table.key=value"}));
 
 TEST(RunConfig, ALongListOfSpeedChangesWouldNotFitAByte) {
   std::string list;
-  for (int i = 0; i < 28; ++i) list += std::to_string(i - 20) + ".5,";
+  for (int i = 0; i < 28; ++i) list += fmt::format("{}.5,", i - 14);
   EXPECT_EQ(
       parse("", {"planner.speed_changes_mps=[" + list + "]"}).planner.speed_changes_mps.size(),
       28U);
@@ -162,7 +163,7 @@ TEST(RunConfig, ATableMustBeATable) {
 TEST(RunConfig, WhatIsNotTomlIsOneLineWithItsPlace) {
   for (const char* text :
        {"[road\nlanes = 3", "[road]\nlanes = ", "[road]\nlanes 3", "[road]\nlanes = 3\nlanes = 3",
-        "\x01\xff\xfe", "[run]\nhost = \"unclosed", "[run]\nseed = 99999999999999999999"}) {
+        "\x01\xff\xfe", "[run]\nhost = \"unclosed"}) {
     const std::string failure = fault_in(text);
     EXPECT_THAT(failure, AllOf(HasSubstr("test.toml"), HasSubstr("not valid TOML"))) << text;
     EXPECT_EQ(failure.find('\n'), std::string::npos) << failure;

@@ -58,7 +58,7 @@ class Command {
 
   // Reads on until the output contains `text`; false when the program ends or `seconds` pass first.
   bool wait_for(const std::string& text, double seconds) {
-    const auto deadline = Clock::now() + std::chrono::duration<double>(seconds);
+    const auto deadline = deadline_in(seconds);
     while (text_.find(text) == std::string::npos) {
       if (Clock::now() > deadline || !read_some(deadline)) return false;
     }
@@ -67,7 +67,7 @@ class Command {
 
   // Waits for the end. A program that has not ended by the deadline is killed: status 137.
   CommandResult finish(double seconds) {
-    const auto deadline = Clock::now() + std::chrono::duration<double>(seconds);
+    const auto deadline = deadline_in(seconds);
     while (Clock::now() < deadline && read_some(deadline)) {
     }
     if (Clock::now() >= deadline) kill(pid_, SIGKILL);
@@ -80,6 +80,11 @@ class Command {
 
  private:
   using Clock = std::chrono::steady_clock;
+
+  static Clock::time_point deadline_in(double seconds) {
+    return Clock::now() +
+           std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
+  }
 
   // False at the end of the output.
   bool read_some(Clock::time_point deadline) {
