@@ -100,7 +100,10 @@ class Trainer {
     const auto start = Clock::now();
     if (schedule_.selects_in(round)) {
       learner_.send(encode(LearnerRequest(rollout_->select(weights_))));
-      ++unread_notes_;
+      // Noted before the round's chunk goes out: where the chunk is known, so is the outcome.
+      const auto body = answer(learner_);
+      if (!body) return false;
+      expect<Noted>(decode_learner_reply(*body), "learner");
     }
     ask_for_weights_of(round + 1);
     const Insert chunk = rollout_->drive_round(weights_);
@@ -131,17 +134,12 @@ class Trainer {
       learner_.send(encode(LearnerRequest(WeightsWanted{version})));
       asked_ = version;
     }
-    while (!have_ || *have_ != version) {
+    if (have_ != version) {
       const auto body = answer(learner_);
       if (!body) return false;
-      LearnerReply reply = decode_learner_reply(*body);
-      if (std::holds_alternative<Noted>(reply) && unread_notes_ > 0) {
-        --unread_notes_;
-        continue;
-      }
-      weights_ = expect<Weights>(std::move(reply), "learner");
-      have_ = weights_.version;
+      weights_ = expect<Weights>(decode_learner_reply(*body), "learner");
       check_weights();
+      have_ = version;
     }
     times_.wait_for_weights_s += seconds_since(start);
     return true;
@@ -214,7 +212,6 @@ class Trainer {
   Weights weights_;
   std::optional<std::uint64_t> have_;   // version of weights_
   std::optional<std::uint64_t> asked_;  // the latest version asked for
-  int unread_notes_ = 0;
   Times times_;
   Clock::time_point line_start_ = Clock::now();
 };

@@ -18,8 +18,8 @@ namespace corridor {
 
 using Duration = std::chrono::milliseconds;
 
-// Where a server listens: "ipc://@name" (abstract Unix socket: no file, gone with its process),
-// "ipc:///path" or "tcp://host:port".
+// Where a server listens: "ipc://@name" (abstract Unix socket: no file, gone with its process) or
+// "tcp://host:port".
 using Address = std::string;
 
 // Who a client is.
@@ -32,7 +32,9 @@ struct ClientIdentity {
 
 struct ClientLimits {
   Duration resend_after{1000};     // an unanswered request is sent again
-  Duration peer_timeout{30'000};   // a server that says nothing for so long is lost
+  // A server that says nothing for so long is lost, from the start on. Time that the client spends
+  // outside `receive` counts for one resend_after at most.
+  Duration peer_timeout{30'000};
   std::size_t window = 8;          // requests without an answer
 };
 
@@ -48,8 +50,8 @@ class Client {
   // Sends a request; returns its sequence number. At most `window` may be unanswered (CHECK).
   std::uint64_t send(Bytes body);
 
-  // The answer to the oldest unanswered request, or nothing when `patience` is over first. Sends
-  // again what needs it. Throws Failure when the peer is lost, refuses, or answers nonsense.
+  // The answer to the oldest unanswered request, or nothing when `patience` is over or a signal
+  // comes first. Sends again what needs it. Throws Failure when the peer is lost, refuses, or answers nonsense.
   std::optional<Bytes> receive(Duration patience);
 
   std::size_t unanswered() const;
@@ -88,20 +90,21 @@ class Server {
   Server(const Server&) = delete;
   Server& operator=(const Server&) = delete;
 
-  // The next new request, or nothing when `patience` is over first. Repeated requests are answered
+  // The next new request, or nothing when `patience` is over or a signal comes first. Repeated requests are answered
   // here; foreign protocols, runs and old incarnations are refused here; anything malformed is
   // dropped and counted. Requests of one client come in their order, each once. A client's new
-  // incarnation starts again at 1 and makes the old one's unanswered requests void.
+  // incarnation starts again at 1 and makes the old one's unanswered requests void; one whose first
+  // request is another is refused: it spoke to this server's predecessor.
   std::optional<IncomingRequest> receive(Duration patience);
 
   // Answers a request of `receive`, now or later, in any order. An answer to a client that has
   // gone, or has a new incarnation since, is dropped.
   void reply(const IncomingRequest& to, Bytes body);
 
-  // Tells the client that its request is impossible; it ends with this text.
+  // Tells the client that its request is impossible; it ends with this text (of <= 512 bytes).
   void refuse(const IncomingRequest& request, const std::string& text);
 
-  // Messages dropped since they were malformed, foreign or outdated.
+  // Messages dropped or refused since they were malformed, foreign or outdated.
   std::uint64_t dropped() const;
 
   // Counts a request whose body `receive`'s caller could not decode, and refuses it.

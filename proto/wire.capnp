@@ -13,6 +13,8 @@
 # sends one again when it is unanswered for a while; the server carries out each number once, in
 # order, and answers a repeated one from its memory. A server that cannot answer yet (it waits for
 # others) answers each repetition with `pending`, so that a waiting client knows it alive.
+#
+# Data fields hold at most 64 MiB unless they say less; observations are at most 65536.
 
 using Cxx = import "/capnp/c++.capnp";
 $Cxx.namespace("corridor::wire");
@@ -20,6 +22,7 @@ $Cxx.namespace("corridor::wire");
 struct Header {
   protocol @0 :UInt32;     # kProtocolVersion of proto/messages.h; a server refuses any other
   runId @1 :Text;          # 32 hex digits, drawn at `corridor train`; a server refuses any other
+                           # (and drops more than 64 bytes)
   role @2 :Role;           # of the client
   index @3 :UInt32;        # of the client among its role: 0 .. actors-1; 0 for the learner
   incarnation @4 :UInt64;  # grows with every start of the client; an older one is refused
@@ -55,8 +58,8 @@ struct ReplayRequest {
       # then it is parked (a round or two ahead at most). Answer: inserted, at once.
       round @1 :UInt64;
       observations @2 :UInt32;  # of the row layout (proto/transition.h)
-      rows @3 :Data;            # float32, little-endian, whole rows; <= 64 MiB
-      priorities @4 :Data;      # float32, one a row: |TD error| by the actor's weights, >= 0
+      rows @3 :Data;            # float32, little-endian, whole rows
+      priorities @4 :Data;      # float32, one a row: |TD error| by the actor's weights, finite, >= 0
       open @5 :OpenEpisode;
     }
 
@@ -71,14 +74,14 @@ struct ReplayRequest {
       # Only in an open block. Answer: batch.
       keys @7 :Data;            # uint64, as they came in an earlier batch; may be empty
       priorities @8 :Data;      # float32 |TD error|, one a key; finite, >= 0
-      count @9 :UInt32;         # rows to draw; 0: none
-      importanceExponent @10 :Float64;  # beta
+      count @9 :UInt32;         # rows to draw, <= 65536; 0: none
+      importanceExponent @10 :Float64;  # beta, finite
     }
 
     save :group {
       # learner, between blocks: write everything that belongs to rounds <= the open block's into
       # the directory (of the run directory's file system). Answer: saved.
-      directory @11 :Text;
+      directory @11 :Text;      # <= 4096 bytes
     }
   }
 }

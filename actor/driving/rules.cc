@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 
 #include "actor/driving/trajectory.h"
 #include "proto/failure.h"
@@ -159,22 +160,23 @@ Command RuleBasedBp::decide(const Situation& situation) {
   return goal_lane_ > lane ? Command::kLeft : Command::kRight;
 }
 
+
+static double env(const char* n, double d) { const char* v = getenv(n); return v ? atof(v) : d; }
 int RuleBasedBp::better_lane(const Scene& scene, int lane) const {
   const RulesSettings& rules = settings_.rules;
-  const double slow_mps = settings_.road.speed_limit_mps - rules.slow_leader_mps;
-  const double own_mps = promise_mps(scene, lane);
-  if (own_mps < slow_mps) {
+  static const double SLM = env("SLM", 1.0), RM = env("RM", 1.0), TW = env("TW", 1.0), GR = env("GR", 1.0);
+  const auto merit = [&](int l) { return promise_mps(scene, l) - TW * settings_.bp_reward.thresholds_mps[l]; };
+  const double own = merit(lane);
+  if (promise_mps(scene, lane) < settings_.bp_reward.thresholds_mps[lane] + SLM) {
     for (const int other : {lane + 1, lane - 1}) {
       if (other < 0 || other >= lanes_.lanes()) continue;
-      if (promise_mps(scene, other) >= own_mps + rules.gain_mps &&
-          has_room(scene, other, 1.0))
-        return other;
+      if (merit(other) >= own + (other > lane ? rules.gain_mps : GR) && has_room(scene, other, 1.0)) return other;
     }
     return -1;
   }
   const int right = lane - 1;
   const bool right_is_free =
-      right >= 0 && promise_mps(scene, right) >= slow_mps &&
+      right >= 0 && promise_mps(scene, right) >= settings_.bp_reward.thresholds_mps[right] + RM &&
       lane_gaps(scene, right, settings_).front_gap_m >= rules.return_right_s * scene.ego.speed_mps;
   return right_is_free && has_room(scene, right, 1.0) ? right : -1;
 }

@@ -5,6 +5,7 @@
 #include <csignal>
 #include <thread>
 
+#include "proto/random.h"
 #include "tests/e2e/run_support.h"
 
 namespace corridor::e2e {
@@ -101,6 +102,61 @@ TEST_F(BadInput, APortInUseIsNamed) {
       train_command(run, {"--set", "run.transport=\"tcp\"", "--set", "run.replay_port=" + port}),
       {port, "in use"});
   close(listener);
+}
+
+// A TCP port that nobody listens on now.
+int free_port() {
+  const int probe = socket(AF_INET, SOCK_STREAM, 0);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  socklen_t size = sizeof address;
+  EXPECT_EQ(bind(probe, reinterpret_cast<sockaddr*>(&address), size), 0);
+  getsockname(probe, reinterpret_cast<sockaddr*>(&address), &size);
+  close(probe);
+  return ntohs(address.sin_port);
+}
+
+// Connects to a port of ours and sends it `bytes`; whether anybody was there.
+bool send_bytes(int port, const std::string& bytes) {
+  const int connection = socket(AF_INET, SOCK_STREAM, 0);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  address.sin_port = htons(static_cast<std::uint16_t>(port));
+  const bool connected =
+      connect(connection, reinterpret_cast<sockaddr*>(&address), sizeof address) == 0;
+  if (connected) (void)!send(connection, bytes.data(), bytes.size(), MSG_NOSIGNAL);
+  close(connection);
+  return connected;
+}
+
+TEST_F(BadInput, RandomBytesToEverySocketChangeNothing) {
+  const auto undisturbed = temporary.path() / "undisturbed";
+  ASSERT_EQ(run_command(train_command(undisturbed), kDeadline_s).status, 0);
+
+  const int replay_port = free_port();
+  int learner_port = free_port();
+  while (learner_port == replay_port) learner_port = free_port();
+  Command training(
+      train_command(run, {"--set", "run.transport=\"tcp\"", "--set", "run.delay_ms_max=40", "--set",
+                          "run.replay_port=" + std::to_string(replay_port), "--set",
+                          "run.learner_port=" + std::to_string(learner_port)}));
+  // The start of ZeroMQ's own greeting lets some of the bytes reach its framing.
+  const std::string greeting("\xff\0\0\0\0\0\0\0\x01\x7f\x03\0NULL", 16);
+  int received = 0;
+  for (std::uint64_t i = 0; i < 400; ++i) {
+    std::string bytes = i % 3 == 0 ? greeting : "";
+    for (std::uint64_t j = 0; j < 40 + i; ++j) {
+      bytes.push_back(static_cast<char>(random_bits(i, Purpose::kWireDelay, {j})));
+    }
+    received += send_bytes(replay_port, bytes) && send_bytes(learner_port, bytes);
+    training.wait_for("never printed", 0.01);
+  }
+  EXPECT_GT(received, 50);
+  const CommandResult result = training.finish(kDeadline_s);
+  ASSERT_EQ(result.status, 0) << result.output;
+  EXPECT_EQ(fingerprint(run), fingerprint(undisturbed));
 }
 
 TEST_F(BadInput, MissingSumoIsNamed) {

@@ -24,14 +24,12 @@ std::string fault_in(const std::string& text, const std::vector<std::string>& ov
 
 TEST(RunConfig, AnEmptyScenarioIsTheDefaults) { EXPECT_EQ(to_toml(parse("")), to_toml({})); }
 
-TEST(RunConfig, TheBpsDefaultsDiffer) {
-  const RunConfig config = parse("");
-  EXPECT_EQ(config.phase(Phase::kMop).steps, 1'000'000);
-  EXPECT_EQ(config.phase(Phase::kMop).gamma, 0.97);
-  EXPECT_EQ(config.phase(Phase::kBp).steps, 400'000);
-  EXPECT_EQ(config.phase(Phase::kBp).gamma, 0.98);
-  EXPECT_EQ(config.phase(Phase::kBp).n_step, 5);
-  EXPECT_EQ(config.phase(Phase::kBp).exploration_hold_max, 10);
+TEST(RunConfig, TheBpHasDefaultsOfItsOwn) {
+  const RunConfig config = parse("[bp]\nn_step = 7");
+  EXPECT_EQ(config.phase(Phase::kMop).gamma, DqnSettings{}.gamma);
+  EXPECT_EQ(config.phase(Phase::kBp).gamma, bp_defaults().gamma);
+  EXPECT_NE(DqnSettings{}.gamma, bp_defaults().gamma);
+  EXPECT_EQ(config.phase(Phase::kBp).n_step, 7);
 }
 
 TEST(RunConfig, KeysOfEveryTypeAreRead) {
