@@ -33,7 +33,7 @@ struct EpisodeSummary {
   double distance_m = 0.0;
   std::vector<std::int64_t> lane_steps;  // steps that ended in each lane
 };
-inline constexpr double kHardBrake_mps2 = 4.0;
+inline constexpr double kHardBrake_mps2 = 3.0;
 
 // One thread owns it; `world` outlives it.
 class Episode {

@@ -15,7 +15,7 @@ namespace corridor::learner {
 
 // Steps under way at a time. Batch i + kDepth is drawn with the priorities of batches 0 .. i,
 // whatever the timing, and the learner trains on one batch while the server draws the next.
-inline constexpr std::size_t kDepth = 2;
+inline constexpr std::size_t kDepth = 4;
 
 struct Block {
   std::uint32_t batches = 0;  // as granted

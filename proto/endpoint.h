@@ -31,11 +31,11 @@ struct ClientIdentity {
 };
 
 struct ClientLimits {
-  Duration resend_after{1000};     // an unanswered request is sent again
+  Duration resend_after{1000};  // an unanswered request is sent again
   // A server that says nothing for so long is lost, from the start on. Time that the client spends
   // outside `receive` counts for one resend_after at most.
   Duration peer_timeout{30'000};
-  std::size_t window = 8;          // requests without an answer
+  std::size_t window = 8;  // requests without an answer
 };
 
 // One client's side of one connection.
@@ -51,7 +51,8 @@ class Client {
   std::uint64_t send(Bytes body);
 
   // The answer to the oldest unanswered request, or nothing when `patience` is over or a signal
-  // comes first. Sends again what needs it. Throws Failure when the peer is lost, refuses, or answers nonsense.
+  // comes first. Sends again what needs it. Throws Failure when the peer is lost, refuses, or
+  // answers nonsense.
   std::optional<Bytes> receive(Duration patience);
 
   std::size_t unanswered() const;
@@ -76,9 +77,9 @@ struct IncomingRequest {
 };
 
 struct ServerLimits {
-  std::size_t window = 8;                          // answers remembered for each client
-  std::size_t clients = 4096;                      // known at a time; further ones are refused
-  std::size_t message_bytes = 128 * 1024 * 1024;   // larger ones close their connection
+  std::size_t window = 8;                         // answers remembered for each client
+  std::size_t clients = 4096;                     // known at a time; further ones are refused
+  std::size_t message_bytes = 128 * 1024 * 1024;  // larger ones close their connection
 };
 
 // The serving side: any number of clients.
@@ -90,11 +91,11 @@ class Server {
   Server(const Server&) = delete;
   Server& operator=(const Server&) = delete;
 
-  // The next new request, or nothing when `patience` is over or a signal comes first. Repeated requests are answered
-  // here; foreign protocols, runs and old incarnations are refused here; anything malformed is
-  // dropped and counted. Requests of one client come in their order, each once. A client's new
-  // incarnation starts again at 1 and makes the old one's unanswered requests void; one whose first
-  // request is another is refused: it spoke to this server's predecessor.
+  // The next new request, or nothing when `patience` is over or a signal comes first. Repeated
+  // requests are answered here; foreign protocols, runs and old incarnations are refused here;
+  // anything malformed is dropped and counted. Requests of one client come in their order, each
+  // once. A client's new incarnation starts again at 1 and makes the old one's unanswered requests
+  // void; one whose first request is another is refused: it spoke to this server's predecessor.
   std::optional<IncomingRequest> receive(Duration patience);
 
   // Answers a request of `receive`, now or later, in any order. An answer to a client that has

@@ -59,9 +59,10 @@ struct EgoSettings {
 
 // [planner] The state-action abstraction of paper section III-C.
 struct PlannerSettings {
-  int corridors_per_lane = 5;                               // N_c: odd, so that there is a middle
-  std::vector<double> speed_changes_mps = {-4.0, 0.0, 2.0};  // of the set-point, ascending
-  double corridor_change_s = 1.0;                           // time to move over by one corridor
+  int corridors_per_lane = 5;  // N_c: odd, so that there is a middle
+  std::vector<double> speed_changes_mps = {-4.0, -1.0, 0.0, 1.0,
+                                           2.0};  // of the set-point, ascending
+  double corridor_change_s = 1.0;                 // time to move over by one corridor
   double gap_range_m = 100.0;
   double side_clearance_m = 0.15;  // added to each side of the ego in a corridor's swath
   double look_ahead_s = 1.0;       // others occupy what their lateral speed reaches by then
@@ -70,7 +71,7 @@ struct PlannerSettings {
 // [mop_reward] Paper section III-C; d = headway_s * v + standstill_gap_m.
 struct MopRewardSettings {
   double speed_tolerance_mps = 1.5;
-  double headway_s = 1.2;  // tau
+  double headway_s = 1.2;         // tau
   double standstill_gap_m = 3.0;  // d0
   // The smallest front gap is near d when in [near_low * d, near_high * d + near_high_offset_m].
   double near_low = 0.6;
@@ -89,13 +90,13 @@ struct BpRewardSettings {
 
 // [rules] The rule-based planners (actor/driving/rules.h).
 struct RulesSettings {
-  double slow_leader_mps = 1.0;      // leave a lane whose leader is this much below the target
-  double leader_range_m = 50.0;      // leaders further away do not matter
-  double gain_mps = 1.0;             // a lane must promise this much more to change to it
-  double front_gap_s = 0.8;          // the least gap to change into, ahead, at ego speed
-  double back_gap_s = 0.6;           // and behind, at the follower's speed
+  double slow_leader_mps = 1.0;  // leave a lane whose leader is this much below the target
+  double leader_range_m = 80.0;  // leaders further away do not matter
+  double gain_mps = 1.0;         // a lane must promise this much more to change to it
+  double front_gap_s = 0.4;      // the least gap to change into, ahead, at ego speed
+  double back_gap_s = 0.3;       // and behind, at the follower's speed
   double gap_min_m = 4.0;
-  double return_right_s = 3.0;       // go back right when nothing is nearer ahead than this
+  double return_right_s = 5.0;  // go back right when nothing is nearer ahead than this
 };
 
 // [random_bp] The behaviour planner that asks while the MoP is trained (paper section III-D).
@@ -134,7 +135,7 @@ struct DqnSettings {
   // Prioritized replay (Schaul et al. 2016).
   std::int64_t capacity = 200'000;
   std::int64_t minimum_size = 5'000;
-  double priority_exponent = 0.6;  // alpha
+  double priority_exponent = 0.6;    // alpha
   double importance_exponent = 0.4;  // beta, rises linearly over the phase
   double importance_exponent_end = 1.0;
   double priority_offset = 1e-3;  // added to |TD error|, so that nothing is never drawn
@@ -158,9 +159,9 @@ inline DqnSettings bp_defaults() {
 
 // [schedule] Rounds, evaluation during training, checkpoints (docs/architecture.md, "Lockstep").
 struct ScheduleSettings {
-  int steps_per_round = 256;            // of each actor: one chunk
+  int steps_per_round = 256;                     // of each actor: one chunk
   std::int64_t selection_every_steps = 100'000;  // greedy evaluation; all actors together
-  int selection_episodes = 16;          // on seeds of its own, the same each time
+  int selection_episodes = 16;                   // on seeds of its own, the same each time
   double selection_collision_cost = 50.0;  // best = reward - cost * collisions, per 1000 steps
   std::int64_t checkpoint_every_steps = 100'000;
   int checkpoints_kept = 2;
@@ -203,10 +204,9 @@ struct RunConfig {
 
   const DqnSettings& phase(Phase which) const { return dqn[static_cast<std::size_t>(which)]; }
   PlannerShape shape(Phase which) const {
-    return which == Phase::kMop
-               ? mop_shape(planner.corridors_per_lane,
-                           static_cast<int>(planner.speed_changes_mps.size()))
-               : bp_shape(road.lanes);
+    return which == Phase::kMop ? mop_shape(planner.corridors_per_lane,
+                                            static_cast<int>(planner.speed_changes_mps.size()))
+                                : bp_shape(road.lanes);
   }
   NetworkShape network(Phase which) const { return phase(which).network(shape(which)); }
 };

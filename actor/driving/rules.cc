@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 
 #include "actor/driving/trajectory.h"
 #include "proto/failure.h"
@@ -11,13 +10,18 @@
 namespace corridor::driving {
 namespace {
 
-constexpr double kComfortBraking_mps2 = 2.0;  // planned with
+constexpr double kComfortBraking_mps2 = 3.0;  // planned with
 constexpr double kHardBraking_mps2 = 4.0;     // expected of a leader, at the worst
 constexpr double kStopGap_m = 1.0;            // left over when both have braked hard
-constexpr double kIncreaseHolds_s = 6.0;      // a rise of the set-point is to last so long
+constexpr double kLeastShare = 0.5;           // of the distance wanted: brake below it
+constexpr double kIncreaseHolds_s = 2.0;      // a rise of the set-point is to last so long
 
 // The room that must be left to go on with a lane change, as a share of that to begin one.
-constexpr double kGoOnShare = 0.5;
+constexpr double kGoOnShare = 0.8;
+// A lane's worth is the speed that brings the ego up to its leader in this time.
+constexpr double kHorizon_s = 12.0;
+// Whoever passes on the right soon meets the next slow vehicle there: it must promise more.
+constexpr double kRightGainFactor = 2.0;
 
 double braking_way_m(double speed_mps, double braking_mps2) {
   return speed_mps * speed_mps / (2 * braking_mps2);
@@ -26,6 +30,11 @@ double braking_way_m(double speed_mps, double braking_mps2) {
 // The way lost to a vehicle that closes in, until the speeds are equal.
 double closing_way_m(double rate_mps, double braking_mps2) {
   return braking_way_m(std::max(0.0, -rate_mps), braking_mps2);
+}
+
+// The distance to follow at, d of the MoP's reward.
+double headway_m(double speed_mps, const DrivingSettings& settings) {
+  return settings.mop_reward.headway_s * speed_mps + settings.mop_reward.standstill_gap_m;
 }
 
 // How much is left of a corridor's gaps when whoever is behind brakes comfortably; < 0: too little.
@@ -49,7 +58,10 @@ bool acceptable(const Slack& there, const Slack& here) {
 }  // namespace
 
 RuleBasedMop::RuleBasedMop(const DrivingSettings& settings)
-    : settings_(settings), lanes_(settings) {}
+    : settings_(settings), lanes_(settings) {
+  if (settings.planner.speed_changes_mps.front() >= 0.0)
+    throw Failure("planner.speed_changes_mps: the rules need one below 0, to brake with");
+}
 
 int RuleBasedMop::decide(const Situation& situation, const Window& window) {
   const int change = corridor_change(situation, window);
@@ -113,11 +125,10 @@ bool RuleBasedMop::keeps_distance(const CorridorGaps& gaps, const Ego& ego,
   const double gap_m = gaps.front_gap_m + leader_mps * settings_.step_s - (end.s_m - ego.s_m);
   const double speed_mps = target.set_point_mps;
   const double closing_mps = std::max(0.0, speed_mps - leader_mps);
-  const MopRewardSettings& reward = settings_.mop_reward;
-  const double headway_m = reward.headway_s * speed_mps + reward.standstill_gap_m;
+  const double wanted_m = headway_m(speed_mps, settings_);
   const double braking_m = braking_way_m(closing_mps, kComfortBraking_mps2);
-  if (speed_mps <= ego.set_point_mps) return gap_m >= reward.near_low * headway_m + braking_m;
-  return gap_m >= headway_m + braking_m + closing_mps * kIncreaseHolds_s;
+  if (speed_mps <= ego.set_point_mps) return gap_m >= kLeastShare * wanted_m + braking_m;
+  return gap_m >= wanted_m + braking_m + closing_mps * kIncreaseHolds_s;
 }
 
 // From now on the leader brakes hard, and from the next step on the ego as hard as its actions can.
@@ -125,15 +136,14 @@ bool RuleBasedMop::survives_hard_braking(double gap_m, double leader_mps, Ego eg
                                          Target target) const {
   const double step_s = settings_.step_s;
   while (true) {
-    const double leader_way_m =
-        leader_mps > kHardBraking_mps2 * step_s
-            ? (leader_mps - kHardBraking_mps2 * step_s / 2) * step_s
-            : braking_way_m(leader_mps, kHardBraking_mps2);
+    const double leader_way_m = leader_mps > kHardBraking_mps2 * step_s
+                                    ? (leader_mps - kHardBraking_mps2 * step_s / 2) * step_s
+                                    : braking_way_m(leader_mps, kHardBraking_mps2);
     leader_mps = std::max(0.0, leader_mps - kHardBraking_mps2 * step_s);
     const TrajectoryPoint end = Trajectory(ego, target, settings_).at(step_s);
     gap_m += leader_way_m - (end.s_m - ego.s_m);
     if (gap_m < kStopGap_m) return false;
-    if (end.speed_mps == 0.0 || end.speed_mps <= leader_mps) return true;
+    if (end.speed_mps == 0.0) return true;
     ego.s_m = end.s_m;
     ego.speed_mps = end.speed_mps;
     ego.set_point_mps = target.set_point_mps;
@@ -153,30 +163,28 @@ Command RuleBasedBp::decide(const Situation& situation) {
       (std::abs(goal_lane_ - lane) != 1 || !has_room(scene, goal_lane_, kGoOnShare)))
     goal_lane_ = -1;
   // One change is over before another begins.
-  const bool settled =
-      std::abs(scene.ego.d_m - lanes_.lane_centre_m(lane)) <= lanes_.corridor_width_m();
+  const bool settled = lanes_.corridor_at(scene.ego.d_m) == lanes_.middle_of_lane(lane);
   if (goal_lane_ < 0 && settled) goal_lane_ = better_lane(scene, lane);
   if (goal_lane_ < 0) return Command::kKeep;
   return goal_lane_ > lane ? Command::kLeft : Command::kRight;
 }
 
-
-static double env(const char* n, double d) { const char* v = getenv(n); return v ? atof(v) : d; }
 int RuleBasedBp::better_lane(const Scene& scene, int lane) const {
   const RulesSettings& rules = settings_.rules;
-  static const double SLM = env("SLM", 1.0), RM = env("RM", 1.0), TW = env("TW", 1.0), GR = env("GR", 1.0);
-  const auto merit = [&](int l) { return promise_mps(scene, l) - TW * settings_.bp_reward.thresholds_mps[l]; };
-  const double own = merit(lane);
-  if (promise_mps(scene, lane) < settings_.bp_reward.thresholds_mps[lane] + SLM) {
+  const double slow_mps = settings_.road.speed_limit_mps - rules.slow_leader_mps;
+  const double own_mps = promise_mps(scene, lane);
+  if (own_mps < slow_mps) {
     for (const int other : {lane + 1, lane - 1}) {
       if (other < 0 || other >= lanes_.lanes()) continue;
-      if (merit(other) >= own + (other > lane ? rules.gain_mps : GR) && has_room(scene, other, 1.0)) return other;
+      const double gain_mps = rules.gain_mps * (other > lane ? 1.0 : kRightGainFactor);
+      if (promise_mps(scene, other) >= own_mps + gain_mps && has_room(scene, other, 1.0))
+        return other;
     }
     return -1;
   }
   const int right = lane - 1;
   const bool right_is_free =
-      right >= 0 && promise_mps(scene, right) >= settings_.bp_reward.thresholds_mps[right] + RM &&
+      right >= 0 && promise_mps(scene, right) >= slow_mps &&
       lane_gaps(scene, right, settings_).front_gap_m >= rules.return_right_s * scene.ego.speed_mps;
   return right_is_free && has_room(scene, right, 1.0) ? right : -1;
 }
@@ -184,9 +192,11 @@ int RuleBasedBp::better_lane(const Scene& scene, int lane) const {
 double RuleBasedBp::promise_mps(const Scene& scene, int lane) const {
   const CorridorGaps gaps = lane_gaps(scene, lane, settings_);
   const double limit_mps = settings_.road.speed_limit_mps;
-  const double range_m = std::min(settings_.rules.leader_range_m, settings_.planner.gap_range_m);
-  if (gaps.front_gap_m >= range_m) return limit_mps;
-  return std::min(limit_mps, scene.ego.speed_mps + gaps.front_rate_mps);
+  if (gaps.front_gap_m >= std::min(settings_.rules.leader_range_m, settings_.planner.gap_range_m))
+    return limit_mps;
+  const double speed_mps = scene.ego.speed_mps;
+  const double spare_m = std::max(0.0, gaps.front_gap_m - headway_m(speed_mps, settings_));
+  return std::min(limit_mps, speed_mps + gaps.front_rate_mps + spare_m / kHorizon_s);
 }
 
 bool RuleBasedBp::has_room(const Scene& scene, int lane, double share) const {

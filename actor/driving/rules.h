@@ -7,9 +7,9 @@
 
 namespace corridor::driving {
 
-// Changes to the left when the own lane's leader is too slow and the left lane promises more and
-// has room; goes back right when nothing is in its way there. Keeps asking until the ego has
-// arrived, and cancels when the room is gone.
+// Leaves a lane that is too slow for one that promises more and has room, the left one first; goes
+// back right when nothing is in its way there. Keeps asking until the ego has arrived, and cancels
+// when the room is gone.
 class RuleBasedBp : public BehaviourPlanner {
  public:
   explicit RuleBasedBp(const DrivingSettings& settings);
@@ -18,8 +18,7 @@ class RuleBasedBp : public BehaviourPlanner {
 
  private:
   int better_lane(const Scene& scene, int lane) const;  // or -1
-  // The speed to be expected there: from the leader's, if close, to the limit, if it is
-  // leader_range_m away.
+  // The speed to be had there for a while: the limit where no leader is in leader_range_m.
   double promise_mps(const Scene& scene, int lane) const;
   // At least this share of the gaps that a change to the lane needs.
   bool has_room(const Scene& scene, int lane, double share) const;
@@ -33,6 +32,7 @@ class RuleBasedBp : public BehaviourPlanner {
 // safest; chooses the set-point that keeps the headway to whatever is ahead in the swath.
 class RuleBasedMop : public MotionPlanner {
  public:
+  // Throws Failure when no set-point change is below 0.
   explicit RuleBasedMop(const DrivingSettings& settings);
   int decide(const Situation& situation, const Window& window) override;
 

@@ -11,7 +11,7 @@ struct TrajectoryPoint {
   double s_m = 0.0;
   double d_m = 0.0;
   double speed_mps = 0.0;
-  double acceleration_mps2 = 0.0;
+  double acceleration_mps2 = 0.0;  // at this instant: 0 once the set-point is reached
   double lateral_speed_mps = 0.0;
 };
 

@@ -95,7 +95,9 @@ StepResult SumoWorld::step(const driving::Trajectory& trajectory) {
     // SUMO moves the others first, past the ego where it was, and then places the ego: after the
     // step all are at the same instant.
     Sumo::step();
-    return finish_step({point.s_m, d_m, point.speed_mps, point.acceleration_mps2,
+    const double acceleration_mps2 =
+        (point.speed_mps - scene_.ego.speed_mps) / settings_.simulation.step_s;
+    return finish_step({point.s_m, d_m, point.speed_mps, acceleration_mps2,
                         point.lateral_speed_mps, trajectory.target().set_point_mps});
   });
 }

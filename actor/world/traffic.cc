@@ -55,6 +55,7 @@ driving::Ego Traffic::start() const {
   ego.s_m = scenario_.traffic.window_m + kStartMargin_m;
   ego.d_m = (static_cast<double>(lane) + 0.5) * scenario_.road.lane_width_m;
   ego.speed_mps = scenario_.traffic.speed_factor_mean * scenario_.road.speed_limit_mps;
+  ego.set_point_mps = ego.speed_mps;
   return ego;
 }
 

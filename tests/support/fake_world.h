@@ -39,7 +39,9 @@ class FakeWorld : public world::World {
 
   world::StepResult step(const driving::Trajectory& trajectory) override {
     const driving::TrajectoryPoint point = trajectory.at(config_.simulation.step_s);
-    return advance({point.s_m, point.d_m, point.speed_mps, point.acceleration_mps2,
+    const double acceleration_mps2 =
+        (point.speed_mps - scene_.ego.speed_mps) / config_.simulation.step_s;
+    return advance({point.s_m, point.d_m, point.speed_mps, acceleration_mps2,
                     point.lateral_speed_mps, trajectory.target().set_point_mps});
   }
 

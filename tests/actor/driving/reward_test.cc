@@ -87,7 +87,7 @@ TEST_F(MopRewardTest, IsOneAtStandstillBehindAStandingLeader) {
 
 TEST_F(MopRewardTest, IsZeroForFollowingWhereACorridorIsFree) {
   Scene scene = following(8.0, 12.6);
-  // From 3.2 to 4.5: not in the swath of corridor 8, from 4.39 + 0.0 ... 6.49 m, once narrow.
+  // From 3.2 to 4.2 m; the swath of corridor 8 begins at 4.39 m, that of corridor 7 at 3.75 m.
   scene.others[0].d_m = 3.7;
   scene.others[0].width_m = 1.0;
   EXPECT_EQ(corridor_gaps(scene, kSettings)[8].front_gap_m, 100.0);
