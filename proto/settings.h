@@ -149,11 +149,11 @@ struct DqnSettings {
 inline DqnSettings bp_defaults() {
   DqnSettings settings;
   settings.steps = 400'000;
-  settings.gamma = 0.98;
-  settings.n_step = 5;
+  settings.gamma = 0.99;
+  settings.n_step = 20;  // a lane change takes five steps and pays only later
   settings.reward_scale = 0.1;
-  settings.epsilon_steps = 60'000;
-  settings.exploration_hold_max = 10;
+  settings.epsilon_end = 0.01;
+  settings.exploration_hold_max = 20;
   return settings;
 }
 

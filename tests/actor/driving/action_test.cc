@@ -7,7 +7,12 @@
 namespace corridor::driving {
 namespace {
 
-const DrivingSettings kSettings = default_settings();
+// Three changes with easy numbers, whatever the default.
+const DrivingSettings kSettings = [] {
+  DrivingSettings settings = default_settings();
+  settings.planner.speed_changes_mps = {-4.0, 0.0, 2.0};
+  return settings;
+}();
 
 TEST(MopActions, HaveTheIndicesOfTheTable) {
   EXPECT_EQ(mop_action(0), (MopAction{-1, 0}));
