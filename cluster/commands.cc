@@ -84,14 +84,14 @@ const Command kCommands[] = {
      [](const Arguments& a) { return resume(a.run, a.program); }},
     {"evaluate", "Drive planners greedily on held-out traffic and print the paper's table",
      "corridor evaluate runs/first\n"
-     "  corridor evaluate runs/first --planners hierarchical,sumo --seeds 1001,1002 --json "
+     "  corridor evaluate runs/first --planners hierarchical,sumo --seeds 1002,1003 --json "
      "out.json",
      declare_evaluate, [](const Arguments& a) { return evaluate(a.evaluate); }},
     {"fingerprint", "Print a hash over everything in the newest checkpoint",
      "corridor fingerprint runs/first",
      [](CLI::App& app, Arguments& a) { declare_run(app, a.run); }, run_fingerprint},
     {"redrive", "Drive a recorded episode again and compare the trajectories",
-     "corridor redrive runs/first hierarchical_1001_3",
+     "corridor redrive runs/first hierarchical_1002_3",
      [](CLI::App& app, Arguments& a) {
        declare_run(app, a.run);
        app.add_option("EPISODE", a.episode, "file, or name as in DIR/evaluation/episodes")

@@ -170,7 +170,7 @@ struct ScheduleSettings {
 // [evaluation] What `corridor evaluate` does unless told otherwise.
 struct EvaluationSettings {
   std::int64_t steps = 40'000;  // for each planner pair and seed
-  std::vector<std::uint64_t> seeds = {1001};
+  std::vector<std::uint64_t> seeds = {1002};
 };
 
 // [run] Where, with how many, and how long to wait.
