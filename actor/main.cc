@@ -40,7 +40,7 @@ actor::TrainedNetworks trained_networks(const RunDirectory& directory) {
 
 int evaluate(const Arguments& arguments, const RunConfig& config, const RunDirectory& directory,
              world::World& world) {
-  const actor::EvaluationTask task{actor::planner_pair(arguments.planners), arguments.seed,
+  const actor::EvaluationTask task{planner_pair(arguments.planners), arguments.seed,
                                    arguments.steps, arguments.fcd};
   actor::evaluate(config, trained_networks(directory), task, directory, world,
                   [&](std::int64_t steps) {

@@ -4,7 +4,6 @@
 
 #include "actor/driving/observation.h"
 #include "actor/driving/rules.h"
-#include "proto/failure.h"
 
 namespace corridor::actor {
 
@@ -26,15 +25,6 @@ QMotionPlanner::QMotionPlanner(const RunConfig& config, std::vector<float> param
 int QMotionPlanner::decide(const driving::Situation& situation, const driving::Window& window) {
   driving::observe_mop(situation.scene, situation.gaps, window, settings_, observation_);
   return network_.greedy(observation_);
-}
-
-const PlannerPair& planner_pair(const std::string& name) {
-  std::string known;
-  for (const PlannerPair& pair : kPlannerPairs) {
-    if (name == pair.name) return pair;
-    known += known.empty() ? pair.name : std::string(", ") + pair.name;
-  }
-  throw Failure("no planners are called '{}'; there are: {}", name, known);
 }
 
 std::unique_ptr<driving::BehaviourPlanner> make_behaviour_planner(const PlannerPair& pair,

@@ -1,4 +1,4 @@
-// Which planners can drive: the learned ones as planners, and the pairs of the paper's Table I.
+// The learned planners, and the planners that make up a pair.
 #pragma once
 
 #include <memory>
@@ -7,6 +7,7 @@
 
 #include "actor/driving/planner.h"
 #include "actor/policy/q_network.h"
+#include "proto/planner_pairs.h"
 #include "proto/settings.h"
 
 namespace corridor::actor {
@@ -34,22 +35,6 @@ class QMotionPlanner : public driving::MotionPlanner {
   policy::QNetwork network_;
   std::vector<float> observation_;
 };
-
-// A row of the table.
-struct PlannerPair {
-  const char* name;
-  bool learned_bp;
-  bool learned_mop;
-  bool world_drives;  // SUMO's own driver model; the other two do not matter
-};
-inline constexpr PlannerPair kPlannerPairs[] = {
-    {"hierarchical", true, true, false}, {"rules", false, false, false},
-    {"rules+mop", false, true, false},   {"bp+rules", true, false, false},
-    {"sumo", false, false, true},
-};
-
-// Throws Failure naming the ones that exist.
-const PlannerPair& planner_pair(const std::string& name);
 
 // The trained networks' parameters, in NetworkShape's order.
 struct TrainedNetworks {

@@ -8,6 +8,7 @@
 #include "cluster/plan.h"
 #include "cluster/training.h"
 #include "proto/failure.h"
+#include "proto/planner_pairs.h"
 #include "proto/program.h"
 
 namespace corridor::cluster {
@@ -43,7 +44,7 @@ void declare_evaluate(CLI::App& app, Arguments& arguments) {
   EvaluateOptions& options = arguments.evaluate;
   declare_run(app, options.run);
   std::string planners = "planner pairs, separated by commas; all unless given:";
-  for (const PlannerPair& pair : planner_pairs()) {
+  for (const PlannerPair& pair : kPlannerPairs) {
     planners += fmt::format("\n{} ({})", pair.name, pair.meaning);
   }
   app.add_option("--planners", options.planners, planners)->delimiter(',')->allow_extra_args(false);

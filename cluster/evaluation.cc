@@ -16,6 +16,7 @@
 #include "cluster/progress.h"
 #include "cluster/text.h"
 #include "proto/failure.h"
+#include "proto/planner_pairs.h"
 #include "proto/run_config.h"
 #include "proto/schedule.h"
 
@@ -95,7 +96,7 @@ void refuse_repeated(std::vector<T> values, const char* what) {
 std::vector<EvaluationJob> jobs_of(const EvaluateOptions& options, const RunConfig& config) {
   std::vector<std::string> planners = options.planners;
   if (planners.empty()) {
-    for (const PlannerPair& pair : planner_pairs()) planners.emplace_back(pair.name);
+    for (const PlannerPair& pair : kPlannerPairs) planners.emplace_back(pair.name);
   }
   const auto& seeds = options.seeds.empty() ? config.evaluation.seeds : options.seeds;
   for (const std::string& planner : planners) planner_pair(planner);

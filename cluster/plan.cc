@@ -1,6 +1,6 @@
 #include "cluster/plan.h"
 
-#include "proto/failure.h"
+#include <spdlog/fmt/fmt.h>
 
 namespace corridor::cluster {
 
@@ -20,26 +20,6 @@ std::vector<ProcessPlan> training_plan(const RunSettings& settings, const RunDir
     plan.push_back(process(actor_name(i), "corridor-actor", {"--index", std::to_string(i)}));
   }
   return plan;
-}
-
-const std::vector<PlannerPair>& planner_pairs() {
-  static const std::vector<PlannerPair> pairs = {
-      {"hierarchical", "learned BP over learned MoP", true, true},
-      {"rules", "rule-based BP and MoP", false, false},
-      {"rules+mop", "rule-based BP over learned MoP", true, false},
-      {"bp+rules", "learned BP over rule-based MoP", false, true},
-      {"sumo", "SUMO drives the ego", false, false},
-  };
-  return pairs;
-}
-
-const PlannerPair& planner_pair(std::string_view name) {
-  std::string known;
-  for (const PlannerPair& pair : planner_pairs()) {
-    if (pair.name == name) return pair;
-    known += fmt::format("{}{}", known.empty() ? "" : ", ", pair.name);
-  }
-  throw Failure("there is no planner '{}'; choose among {}", name, known);
 }
 
 std::vector<EvaluationJob> evaluation_jobs(const std::vector<std::string>& planners,

@@ -3,7 +3,6 @@
 
 #include <filesystem>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "proto/run_directory.h"
@@ -28,17 +27,6 @@ std::string actor_name(int index);
 // Replay server, learner, and actors 0 .. actors-1. `programs` is the directory of the programs.
 std::vector<ProcessPlan> training_plan(const RunSettings& settings, const RunDirectory& directory,
                                        const std::filesystem::path& programs);
-
-// The planners (BP+MoP pairs) that can be evaluated, in the order of the table.
-struct PlannerPair {
-  const char* name;
-  const char* meaning;
-  bool learned_mop;
-  bool learned_bp;
-};
-const std::vector<PlannerPair>& planner_pairs();
-// Throws Failure naming the pairs that there are.
-const PlannerPair& planner_pair(std::string_view name);
 
 // One greedy evaluation by one actor process.
 struct EvaluationJob {

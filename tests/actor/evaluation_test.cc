@@ -111,14 +111,5 @@ TEST_F(Evaluation, RefusesWhatIsNoEpisode) {
   EXPECT_THROW(redrive(config, file, world, {}), Failure);
 }
 
-TEST(PlannerPairs, AnUnknownNameListsTheKnownOnes) {
-  try {
-    planner_pair("best");
-    FAIL();
-  } catch (const Failure& failure) {
-    EXPECT_NE(std::string(failure.what()).find("rules+mop"), std::string::npos);
-  }
-}
-
 }  // namespace
 }  // namespace corridor::actor

@@ -20,6 +20,7 @@ RunConfig small_config() {
   config.run.actors = 2;
   for (auto& dqn : config.dqn) {
     dqn.steps = 20 * 80;
+    dqn.n_step = 4;
     dqn.epsilon_steps = 400;
     dqn.exploration_hold_max = 5;
   }

@@ -5,7 +5,6 @@
 
 #include <set>
 
-#include "proto/failure.h"
 #include "tests/support/temporary_directory.h"
 
 namespace corridor::cluster {
@@ -61,14 +60,6 @@ TEST_F(Plan, TrajectoriesAreWrittenOnlyWhenAskedFor) {
               ElementsAre("/p/corridor-actor", root_, "--evaluate", "rules+mop", "--seed", "7",
                           "--steps", "100", "--fcd", "/tmp/fcd"));
   EXPECT_EQ(evaluation_file(job, directory_), directory_.evaluation() / "rules+mop_7.json");
-}
-
-TEST_F(Plan, APlannerThatThereIsNotIsAnsweredWithThoseThatThereAre) {
-  EXPECT_TRUE(planner_pair("hierarchical").learned_bp);
-  EXPECT_THAT([] { planner_pair("human"); },
-              ThrowsMessage<Failure>(HasSubstr(
-                  "no planner 'human'; choose among hierarchical, rules, rules+mop, bp+rules, "
-                  "sumo")));
 }
 
 }  // namespace
