@@ -81,22 +81,26 @@ std::vector<float> key_as_priority(const Batch& batch) {
   return {batch.keys.begin(), batch.keys.end()};
 }
 
-TEST(ReplayClient, SendsABatchsPrioritiesWithTheStepTwoLater) {
+TEST(ReplayClient, SendsABatchsPrioritiesWithTheStepSoManyLater) {
   ScriptedServer server(batches());
   Connection connection(server);
   std::vector<std::uint64_t> trained;
-  connection.replay.run_block({4, 2, 0.5}, [&](const Batch& batch) {
+  constexpr std::uint32_t kBatches = kDepth + 2;
+  connection.replay.run_block({kBatches, 2, 0.5}, [&](const Batch& batch) {
     trained.push_back(batch.keys[0]);
     return key_as_priority(batch);
   });
-  EXPECT_THAT(trained, ElementsAre(0, 10, 20, 30));
+  ASSERT_EQ(trained.size(), kBatches);
   EXPECT_EQ(connection.client.unanswered(), 0u);
-  const std::vector<ReplayRequest> expected = {Step{{}, {}, 2, 0.5},
-                                               Step{{}, {}, 2, 0.5},
-                                               Step{{0, 1}, {0, 1}, 2, 0.5},
-                                               Step{{10, 11}, {10, 11}, 2, 0.5},
-                                               Step{{20, 21}, {20, 21}, 0, 0.5},
-                                               Step{{30, 31}, {30, 31}, 0, 0.5}};
+  std::vector<ReplayRequest> expected(kDepth, Step{{}, {}, 2, 0.5});
+  for (std::uint32_t i = 0; i < kBatches; ++i) {
+    EXPECT_EQ(trained[i], 10 * i);
+    const std::uint64_t key = 10 * i;
+    expected.push_back(Step{{key, key + 1},
+                            {static_cast<float>(key), static_cast<float>(key + 1)},
+                            i + kDepth < kBatches ? 2u : 0u,
+                            0.5});
+  }
   EXPECT_EQ(server.end(), expected);
 }
 
