@@ -13,6 +13,7 @@
 #include "proto/random.h"
 #include "proto/run_directory.h"
 #include "tests/replay/small_run.h"
+#include "tests/support/temporary_directory.h"
 
 namespace corridor::replay {
 namespace {
@@ -78,18 +79,13 @@ void run_blocks(ReplayService& service, std::uint64_t from, std::uint64_t to,
 
 class ReplayServiceTest : public testing::Test {
  protected:
-  ReplayServiceTest() {
-    std::string pattern = (fs::temp_directory_path() / "replay_service_XXXXXX").string();
-    directory_ = mkdtemp(pattern.data());
-  }
-  ~ReplayServiceTest() override { fs::remove_all(directory_); }
-
   std::string saved_bytes(const ReplayService& service) const {
     service.save(directory_);
     return read_file(directory_ / "replay.safetensors");
   }
 
-  fs::path directory_;
+  testing_support::TemporaryDirectory temporary_;
+  fs::path directory_ = temporary_.path();
 };
 
 TEST_F(ReplayServiceTest, BatchesDependOnNoOrderOfArrival) {

@@ -15,6 +15,7 @@
 #include "proto/codec.h"
 #include "proto/failure.h"
 #include "tests/replay/small_run.h"
+#include "tests/support/temporary_directory.h"
 
 namespace corridor::replay {
 namespace {
@@ -44,8 +45,6 @@ Insert mop_chunk(std::uint64_t round, std::uint32_t index) {
 class ServeTest : public testing::Test {
  protected:
   ServeTest() {
-    std::string pattern = (fs::temp_directory_path() / "serve_XXXXXX").string();
-    directory_ = mkdtemp(pattern.data());
     address_ =
         fmt::format("ipc://@corridor-serve-test-{}-{}", getpid(), directory_.filename().string());
     thread_ = std::thread([this] {
@@ -59,7 +58,6 @@ class ServeTest : public testing::Test {
   ~ServeTest() override {
     stop_ = true;
     thread_.join();
-    fs::remove_all(directory_);
   }
 
   Client connect(Role role, std::uint32_t index, std::uint64_t incarnation = 1) const {
@@ -85,7 +83,8 @@ class ServeTest : public testing::Test {
     return "not refused";
   }
 
-  fs::path directory_;
+  testing_support::TemporaryDirectory temporary_;
+  fs::path directory_ = temporary_.path();
   Address address_;
   std::atomic<bool> stop_ = false;
   std::thread thread_;

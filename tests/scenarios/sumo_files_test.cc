@@ -11,6 +11,7 @@
 #include "proto/failure.h"
 #include "proto/run_config.h"
 #include "proto/run_directory.h"
+#include "tests/support/temporary_directory.h"
 
 namespace corridor::scenarios {
 namespace {
@@ -23,9 +24,6 @@ using testing::Not;
 class SumoFiles : public testing::Test {
  protected:
   SumoFiles() {
-    std::string name = fs::temp_directory_path() / "corridor-scenarios-XXXXXX";
-    if (mkdtemp(name.data()) == nullptr) throw Failure("mkdtemp failed");
-    directory_ = name;
     for (const char* variable : {"SUMO_HOME", "PATH"}) {
       const char* value = std::getenv(variable);
       saved_.emplace_back(variable, value ? std::optional<std::string>(value) : std::nullopt);
@@ -35,7 +33,6 @@ class SumoFiles : public testing::Test {
     for (const auto& [variable, value] : saved_) {
       value ? setenv(variable.c_str(), value->c_str(), 1) : unsetenv(variable.c_str());
     }
-    fs::remove_all(directory_);
   }
 
   // A SUMO whose netconvert is this shell script.
@@ -56,7 +53,8 @@ class SumoFiles : public testing::Test {
     return "no failure";
   }
 
-  fs::path directory_;
+  testing_support::TemporaryDirectory temporary_;
+  fs::path directory_ = temporary_.path();
   std::vector<std::pair<std::string, std::optional<std::string>>> saved_;
 };
 

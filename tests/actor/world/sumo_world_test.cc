@@ -14,6 +14,7 @@
 #include "proto/failure.h"
 #include "proto/hash.h"
 #include "scenarios/sumo_files.h"
+#include "tests/support/temporary_directory.h"
 
 namespace corridor::world {
 namespace {
@@ -22,20 +23,7 @@ namespace fs = std::filesystem;
 using driving::Scene;
 using driving::Vehicle;
 using testing::HasSubstr;
-
-class TemporaryDirectory {
- public:
-  TemporaryDirectory() {
-    std::string name = fs::temp_directory_path() / "corridor-world-XXXXXX";
-    if (mkdtemp(name.data()) == nullptr) throw Failure("mkdtemp failed");
-    path_ = name;
-  }
-  ~TemporaryDirectory() { fs::remove_all(path_); }
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
+using testing_support::TemporaryDirectory;
 
 class SumoWorldTest : public testing::Test {
  protected:
