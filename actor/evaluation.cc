@@ -67,7 +67,7 @@ json episode_json(const EvaluationTask& task, std::uint64_t index, std::uint64_t
           {"evaluation_seed", task.seed},
           {"episode", index},
           {"episode_seed", seed},
-          {"driven_by_world", task.pair.world_drives},
+          {"driven_by_world", task.pair.world_drives()},
           {"actions", episode.actions()},
           {"trajectory_hash", hex(episode.trajectory_hash())},
           {"summary", summary_json(episode.summary(), index)}};
@@ -92,7 +92,7 @@ void evaluate(const RunConfig& config, const TrainedNetworks& networks, const Ev
     if (!task.fcd_directory.empty()) {
       start.fcd_output = task.fcd_directory / fmt::format("{}_{}.fcd.xml", name, index);
     }
-    if (task.pair.world_drives) {
+    if (task.pair.world_drives()) {
       start.driver = world::EgoDriver::kWorld;
       drive_by_world(episode, start, task.steps - steps);
     } else {

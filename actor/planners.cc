@@ -30,15 +30,37 @@ int QMotionPlanner::decide(const driving::Situation& situation, const driving::W
 std::unique_ptr<driving::BehaviourPlanner> make_behaviour_planner(const PlannerPair& pair,
                                                                   const RunConfig& config,
                                                                   const TrainedNetworks& networks) {
-  if (pair.learned_bp) return std::make_unique<QBehaviourPlanner>(config, networks.bp);
-  return std::make_unique<driving::RuleBasedBp>(driving_settings(config));
+  using driving::Command, driving::ConstantBp;
+  const DrivingSettings settings = driving_settings(config);
+  switch (pair.bp) {
+    case BpKind::kLearned:
+      return std::make_unique<QBehaviourPlanner>(config, networks.bp);
+    case BpKind::kRules:
+      return std::make_unique<driving::RuleBasedBp>(settings);
+    case BpKind::kAlwaysKeep:
+      return std::make_unique<ConstantBp>(Command::kKeep, settings);
+    case BpKind::kAlwaysLeft:
+      return std::make_unique<ConstantBp>(Command::kLeft, settings);
+    case BpKind::kAlwaysRight:
+      return std::make_unique<ConstantBp>(Command::kRight, settings);
+    case BpKind::kNone:
+      break;
+  }
+  return nullptr;
 }
 
 std::unique_ptr<driving::MotionPlanner> make_motion_planner(const PlannerPair& pair,
                                                             const RunConfig& config,
                                                             const TrainedNetworks& networks) {
-  if (pair.learned_mop) return std::make_unique<QMotionPlanner>(config, networks.mop);
-  return std::make_unique<driving::RuleBasedMop>(driving_settings(config));
+  switch (pair.mop) {
+    case MopKind::kLearned:
+      return std::make_unique<QMotionPlanner>(config, networks.mop);
+    case MopKind::kRules:
+      return std::make_unique<driving::RuleBasedMop>(driving_settings(config));
+    case MopKind::kNone:
+      break;
+  }
+  return nullptr;
 }
 
 }  // namespace corridor::actor

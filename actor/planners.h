@@ -42,6 +42,7 @@ struct TrainedNetworks {
   std::vector<float> bp;
 };
 
+// Null where the pair has no planner.
 std::unique_ptr<driving::BehaviourPlanner> make_behaviour_planner(const PlannerPair& pair,
                                                                   const RunConfig& config,
                                                                   const TrainedNetworks& networks);

@@ -43,9 +43,9 @@ void declare_run(CLI::App& app, std::filesystem::path& run) {
 void declare_evaluate(CLI::App& app, Arguments& arguments) {
   EvaluateOptions& options = arguments.evaluate;
   declare_run(app, options.run);
-  std::string planners = "planner pairs, separated by commas; all unless given:";
+  std::string planners = "planner pairs, separated by commas; those marked * unless given:";
   for (const PlannerPair& pair : kPlannerPairs) {
-    planners += fmt::format("\n{} ({})", pair.name, pair.meaning);
+    planners += fmt::format("\n{}{} ({})", pair.name, pair.by_default ? "*" : "", pair.meaning);
   }
   app.add_option("--planners", options.planners, planners)->delimiter(',')->allow_extra_args(false);
   app.add_option("--steps", options.steps, "steps for each planner and seed (evaluation.steps)");

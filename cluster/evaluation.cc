@@ -96,7 +96,9 @@ void refuse_repeated(std::vector<T> values, const char* what) {
 std::vector<EvaluationJob> jobs_of(const EvaluateOptions& options, const RunConfig& config) {
   std::vector<std::string> planners = options.planners;
   if (planners.empty()) {
-    for (const PlannerPair& pair : kPlannerPairs) planners.emplace_back(pair.name);
+    for (const PlannerPair& pair : kPlannerPairs) {
+      if (pair.by_default) planners.emplace_back(pair.name);
+    }
   }
   const auto& seeds = options.seeds.empty() ? config.evaluation.seeds : options.seeds;
   for (const std::string& planner : planners) planner_pair(planner);
@@ -121,7 +123,8 @@ void check_can_write(const std::filesystem::path& file) {
 void check_can_drive(const std::string& planner, const RunDirectory& directory,
                      const RunConfig& config) {
   const PlannerPair& pair = planner_pair(planner);
-  if (!pair.learned_mop && !pair.learned_bp) return;
+  const bool learned_bp = pair.bp == BpKind::kLearned;
+  if (!learned_bp && pair.mop != MopKind::kLearned) return;
   const std::optional<Checkpoint> checkpoint = newest_checkpoint(directory);
   if (!checkpoint) {
     throw Failure(
@@ -130,7 +133,7 @@ void check_can_drive(const std::string& planner, const RunDirectory& directory,
         planner, directory.root().string());
   }
   const std::uint64_t bp_begins = Schedule(config).first_round(Phase::kBp);
-  if (pair.learned_bp && checkpoint->rounds_done <= bp_begins) {
+  if (learned_bp && checkpoint->rounds_done <= bp_begins) {
     throw Failure(
         "planner '{}' drives with the learned BP, and {} has trained the MoP only, for "
         "{} rounds: wait, or choose --planners rules,rules+mop,sumo",

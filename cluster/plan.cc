@@ -14,7 +14,7 @@ std::vector<ProcessPlan> training_plan(const RunSettings& settings, const RunDir
     arguments.insert(arguments.begin(), {(programs / program).string(), run});
     return ProcessPlan{name, std::move(arguments), directory.log(name)};
   };
-  std::vector<ProcessPlan> plan = {process("replay", "corridor-replay", {}),
+  std::vector<ProcessPlan> plan = {process(kReplay, "corridor-replay", {}),
                                    process(kLearner, "corridor-learner", {})};
   for (int i = 0; i < settings.actors; ++i) {
     plan.push_back(process(actor_name(i), "corridor-actor", {"--index", std::to_string(i)}));

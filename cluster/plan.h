@@ -20,6 +20,7 @@ struct ProcessPlan {
 // The one of a training that ends by itself when all is done, and is to be stopped before the
 // others, since its checkpoint needs them.
 inline constexpr const char* kLearner = "learner";
+inline constexpr const char* kReplay = "replay";
 
 // "actor-<index>": names the process, its log and its metrics file.
 std::string actor_name(int index);

@@ -160,6 +160,10 @@ void TrainingProgress::on_actor(const MetricsLine& line) {
   if (line.phase == phase_) note("actor", line);
 }
 
+void TrainingProgress::on_replay(const MetricsLine& line) {
+  if (line.phase == phase_) note("replay", line);
+}
+
 std::optional<double> TrainingProgress::mean(const std::string& process, const char* name) const {
   const auto found = recent_.find(fmt::format("{} {}", process, name));
   return found == recent_.end() ? std::nullopt : found->second.mean();
@@ -191,7 +195,7 @@ std::string TrainingProgress::details() const {
     append(fmt::format("reward {:.0f}, collisions {:.1f} per 1000 steps", *reward,
                        mean("actor", "charts/collisions_per_1000").value_or(0.0)));
   }
-  if (const auto ratio = mean("learner", "replay/samples_per_insert")) {
+  if (const auto ratio = mean("replay", "replay/samples_per_insert")) {
     append(fmt::format("{:.1f} samples per insert", *ratio));
   }
   return text.empty() ? "starting" : text;

@@ -57,6 +57,7 @@ class TrainingProgress {
 
   void on_learner(const MetricsLine& line, double now_s);
   void on_actor(const MetricsLine& line);
+  void on_replay(const MetricsLine& line);
 
   std::int64_t steps_done() const { return steps_done_; }
   std::int64_t steps_total() const;

@@ -44,7 +44,8 @@ class Monitor {
  public:
   Monitor(const RunConfig& config, const RunDirectory& directory, std::uint64_t rounds_done)
       : progress_(Schedule(config), rounds_done, monotonic_s()),
-        learner_(directory.metrics(kLearner)) {
+        learner_(directory.metrics(kLearner)),
+        replay_(directory.metrics(kReplay)) {
     for (int i = 0; i < config.run.actors; ++i) {
       actors_.emplace_back(directory.metrics(actor_name(i)));
     }
@@ -54,6 +55,9 @@ class Monitor {
     const double now_s = monotonic_s();
     for (const std::string& text : learner_.read()) {
       if (const auto line = parse_metrics_line(text)) progress_.on_learner(*line, now_s);
+    }
+    for (const std::string& text : replay_.read()) {
+      if (const auto line = parse_metrics_line(text)) progress_.on_replay(*line);
     }
     for (LineTail& actor : actors_) {
       for (const std::string& text : actor.read()) {
@@ -66,6 +70,7 @@ class Monitor {
  private:
   TrainingProgress progress_;
   LineTail learner_;
+  LineTail replay_;
   std::vector<LineTail> actors_;
   ProgressDisplay display_;
 };

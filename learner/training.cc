@@ -221,21 +221,11 @@ void Training::report(std::uint64_t round, const Opened& opened, const BlockResu
   if (!selected_ && !phase_ends && rounds_done % every != 0) return;
 
   const double passed_s = std::max(seconds_since(reported_), 1e-9);
-  const auto number = [](std::uint64_t value) { return static_cast<double>(value); };
-  const std::uint64_t sampled =
-      opened.sampled +
-      std::uint64_t{opened.batches} * static_cast<std::uint64_t>(settings.batch_size);
   std::vector<std::pair<std::string, double>> values = {
       {"charts/SPS", static_cast<double>(steps_since_report_) / passed_s},
-      {"charts/updates", number(result.updates)},
+      {"charts/updates", static_cast<double>(result.updates)},
       {"charts/learning_rate", between(settings.learning_rate, settings.learning_rate_end,
                                        schedule_.phase_progress(round))},
-      {"replay/size", number(opened.size)},
-      {"replay/inserted", number(opened.inserted)},
-      {"replay/sampled", number(sampled)},
-      {"replay/samples_per_insert",
-       opened.inserted == 0 ? 0.0 : number(sampled) / number(opened.inserted)},
-      {"replay/stale_priorities", number(opened.stale_priorities)},
       {"time/wait_for_actors", times_.wait_for_actors_s / passed_s},
       {"time/wait_for_replay", times_.wait_for_replay_s / passed_s},
       {"time/update", times_.update_s / passed_s},

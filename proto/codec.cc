@@ -130,14 +130,8 @@ Bytes encode_reply(const Inserted&) {
 }
 
 Bytes encode_reply(const Opened& opened) {
-  return build<wire::ReplayReply>(0, [&](auto root) {
-    auto to = root.initOpened();
-    to.setSize(opened.size);
-    to.setInserted(opened.inserted);
-    to.setSampled(opened.sampled);
-    to.setBatches(opened.batches);
-    to.setStalePriorities(opened.stale_priorities);
-  });
+  return build<wire::ReplayReply>(0,
+                                  [&](auto root) { root.initOpened().setBatches(opened.batches); });
 }
 
 Bytes encode_reply(const Batch& batch) {
@@ -398,9 +392,7 @@ ReplayReply decode_replay_reply(ByteView bytes) {
       case ReplayReply::INSERTED:
         return Inserted{};
       case ReplayReply::OPENED: {
-        const auto opened = from.getOpened();
-        return Opened{opened.getSize(), opened.getInserted(), opened.getSampled(),
-                      opened.getBatches(), opened.getStalePriorities()};
+        return Opened{from.getOpened().getBatches()};
       }
       case ReplayReply::BATCH:
         return read_batch(from.getBatch());

@@ -9,7 +9,7 @@
 namespace corridor {
 
 // Raised with every change of proto/wire.capnp or of a meaning in it.
-inline constexpr std::uint32_t kProtocolVersion = 1;
+inline constexpr std::uint32_t kProtocolVersion = 2;
 
 using Bytes = std::vector<std::byte>;
 
@@ -73,11 +73,7 @@ struct Inserted {
   bool operator==(const Inserted&) const = default;
 };
 struct Opened {
-  std::uint64_t size = 0;
-  std::uint64_t inserted = 0;
-  std::uint64_t sampled = 0;
   std::uint32_t batches = 0;
-  std::uint64_t stale_priorities = 0;
   bool operator==(const Opened&) const = default;
 };
 struct Batch {

@@ -1,25 +1,43 @@
-// The pairs of planners that can be evaluated: the rows of the paper's Table I, in its order. What
-// the command may ask an actor for.
+// The pairs of planners that can be evaluated: the rows of the paper's Table I, in its order, then
+// the naive ones that a table must be read against. What the command may ask an actor for.
 #pragma once
 
 #include <string_view>
 
 namespace corridor {
 
+enum class BpKind {
+  kLearned,
+  kRules,
+  kAlwaysKeep,  // asks for the same at every step
+  kAlwaysLeft,
+  kAlwaysRight,
+  kNone,  // SUMO's own driver model drives: there is no planner
+};
+enum class MopKind { kLearned, kRules, kNone };
+
 struct PlannerPair {
   const char* name;
   const char* meaning;
-  bool learned_bp;
-  bool learned_mop;
-  bool world_drives;  // SUMO's own driver model: there is no planner
+  BpKind bp;
+  MopKind mop;
+  bool by_default;  // evaluated when no pairs are named
+
+  bool world_drives() const { return bp == BpKind::kNone; }
 };
 
 inline constexpr PlannerPair kPlannerPairs[] = {
-    {"hierarchical", "learned BP over learned MoP", true, true, false},
-    {"rules", "rule-based BP and MoP", false, false, false},
-    {"rules+mop", "rule-based BP over learned MoP", false, true, false},
-    {"bp+rules", "learned BP over rule-based MoP", true, false, false},
-    {"sumo", "SUMO drives the ego", false, false, true},
+    {"hierarchical", "learned BP over learned MoP", BpKind::kLearned, MopKind::kLearned, true},
+    {"rules", "rule-based BP and MoP", BpKind::kRules, MopKind::kRules, true},
+    {"rules+mop", "rule-based BP over learned MoP", BpKind::kRules, MopKind::kLearned, true},
+    {"bp+rules", "learned BP over rule-based MoP", BpKind::kLearned, MopKind::kRules, true},
+    {"sumo", "SUMO drives the ego", BpKind::kNone, MopKind::kNone, true},
+    {"keep+rules", "stay in the lane", BpKind::kAlwaysKeep, MopKind::kRules, false},
+    {"left+rules", "go to the left lane and stay", BpKind::kAlwaysLeft, MopKind::kRules, false},
+    {"right+rules", "go to the right lane and stay", BpKind::kAlwaysRight, MopKind::kRules, false},
+    {"keep+mop", "stay in the lane", BpKind::kAlwaysKeep, MopKind::kLearned, false},
+    {"left+mop", "go to the left lane and stay", BpKind::kAlwaysLeft, MopKind::kLearned, false},
+    {"right+mop", "go to the right lane and stay", BpKind::kAlwaysRight, MopKind::kLearned, false},
 };
 
 // Throws Failure naming the pairs that there are.

@@ -30,8 +30,8 @@ struct SimulationSettings {
 // [traffic] A treadmill: the traffic within `window_m` of the ego is kept up around it.
 struct TrafficSettings {
   double window_m = 125.0;
-  int vehicles_min = 13;  // drawn once an episode
-  int vehicles_max = 15;
+  int vehicles_min = 11;  // drawn once an episode
+  int vehicles_max = 13;
   double slow_share = 0.03;  // cars with speed factor `slow_speed_factor`
   double slow_speed_factor = 0.5;
   double truck_share = 0.02;
@@ -41,7 +41,7 @@ struct TrafficSettings {
   double speed_factor_deviation = 0.15;
   double speed_factor_min = 0.4;
   double speed_factor_max = 1.15;
-  double keep_right = 6.0;  // SUMO's lcKeepRight
+  double keep_right = 0.0;  // SUMO's lcKeepRight
   // Blind drivers: a neighbour of the ego that changes into its lane without looking. SUMO's own
   // drivers almost never hit the ego; those of the paper did.
   double blind_rate_per_s = 0.01;
@@ -77,7 +77,7 @@ struct MopRewardSettings {
   double near_low = 0.6;
   double near_high = 1.5;
   double near_high_offset_m = 5.0;
-  double acceleration_penalty = 0.02;  // for each m/s2
+  double acceleration_penalty = 0.05;  // for each m/s2
 };
 
 // [bp_reward] Paper section III-B.
@@ -90,13 +90,13 @@ struct BpRewardSettings {
 
 // [rules] The rule-based planners (actor/driving/rules.h).
 struct RulesSettings {
-  double slow_leader_mps = 1.0;  // leave a lane whose leader is this much below the target
+  double slow_leader_mps = 2.0;  // leave a lane whose leader is this much below the target
   double leader_range_m = 80.0;  // leaders further away do not matter
-  double gain_mps = 1.0;         // a lane must promise this much more to change to it
-  double front_gap_s = 0.4;      // the least gap to change into, ahead, at ego speed
-  double back_gap_s = 0.3;       // and behind, at the follower's speed
-  double gap_min_m = 4.0;
-  double return_right_s = 5.0;  // go back right when nothing is nearer ahead than this
+  double gain_mps = 0.25;        // a lane must promise this much more to change to it
+  double front_gap_s = 0.2;      // the least gap to change into, ahead, at ego speed
+  double back_gap_s = 0.2;       // and behind, at the follower's speed
+  double gap_min_m = 2.5;
+  double return_right_s = 2.0;  // go back right when nothing is nearer ahead than this
 };
 
 // [random_bp] The behaviour planner that asks while the MoP is trained (paper section III-D).

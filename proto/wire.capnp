@@ -94,19 +94,15 @@ struct ReplayReply {
     }
     inserted @2 :Void;
     opened :group {
-      size @3 :UInt64;          # rows held
-      inserted @4 :UInt64;      # rows admitted in this phase
-      sampled @5 :UInt64;       # rows drawn in this phase
-      batches @6 :UInt32;       # that the samples-per-insert limiter grants to this block
-      stalePriorities @7 :UInt64;  # priority updates dropped since their row had been replaced
+      batches @3 :UInt32;       # that the samples-per-insert limiter grants to this block
     }
     batch :group {
-      observations @8 :UInt32;
-      rows @9 :Data;            # float32, `count` rows, or none
-      keys @10 :Data;           # uint64: insert index, never reused
-      weights @11 :Data;        # float32 importance weights, largest of the batch = 1
+      observations @4 :UInt32;
+      rows @5 :Data;            # float32, `count` rows, or none
+      keys @6 :Data;            # uint64: insert index, never reused
+      weights @7 :Data;         # float32 importance weights, largest of the batch = 1
     }
-    saved @12 :Void;
+    saved @8 :Void;
   }
 }
 

@@ -109,8 +109,7 @@ std::optional<Opened> ReplayService::try_open() {
   CORRIDOR_CHECK(batches <= UINT32_MAX, "{} batches", batches);
   waits_ = false;
   open_ = true;
-  return Opened{store_.size(), store_.inserted(), store_.sampled(),
-                static_cast<std::uint32_t>(batches), store_.stale_priorities()};
+  return Opened{static_cast<std::uint32_t>(batches)};
 }
 
 Outcome ReplayService::answer(ClientId, const Step& request) {

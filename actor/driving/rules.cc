@@ -20,8 +20,6 @@ constexpr double kIncreaseHolds_s = 2.0;      // a rise of the set-point is to l
 constexpr double kGoOnShare = 0.8;
 // A lane's worth is the speed that brings the ego up to its leader in this time.
 constexpr double kHorizon_s = 12.0;
-// Whoever passes on the right soon meets the next slow vehicle there: it must promise more.
-constexpr double kRightGainFactor = 2.0;
 
 double braking_way_m(double speed_mps, double braking_mps2) {
   return speed_mps * speed_mps / (2 * braking_mps2);
@@ -176,8 +174,7 @@ int RuleBasedBp::better_lane(const Scene& scene, int lane) const {
   if (own_mps < slow_mps) {
     for (const int other : {lane + 1, lane - 1}) {
       if (other < 0 || other >= lanes_.lanes()) continue;
-      const double gain_mps = rules.gain_mps * (other > lane ? 1.0 : kRightGainFactor);
-      if (promise_mps(scene, other) >= own_mps + gain_mps && has_room(scene, other, 1.0))
+      if (promise_mps(scene, other) >= own_mps + rules.gain_mps && has_room(scene, other, 1.0))
         return other;
     }
     return -1;
@@ -209,6 +206,13 @@ bool RuleBasedBp::has_room(const Scene& scene, int lane, double share) const {
   const double back_m = rules.back_gap_s * follower_mps + rules.gap_min_m +
                         closing_way_m(gaps.back_rate_mps, kComfortBraking_mps2);
   return gaps.front_gap_m >= share * front_m && gaps.back_gap_m >= share * back_m;
+}
+
+ConstantBp::ConstantBp(Command command, const DrivingSettings& settings)
+    : command_(command), settings_(settings) {}
+
+Command ConstantBp::decide(const Situation& situation) {
+  return feasible(command_, situation.scene.ego, settings_);
 }
 
 RandomBp::RandomBp(const DrivingSettings& settings) : settings_(settings), lanes_(settings) {}

@@ -28,6 +28,19 @@ class RuleBasedBp : public BehaviourPlanner {
   int goal_lane_ = -1;  // of the change under way; -1: none
 };
 
+// Asks for the same at every step, "keep" once there is no lane to change to: the naive planners
+// that tell whether a scenario's traffic needs a BP at all.
+class ConstantBp : public BehaviourPlanner {
+ public:
+  ConstantBp(Command command, const DrivingSettings& settings);
+  void begin_episode(std::uint64_t) override {}
+  Command decide(const Situation& situation) override;
+
+ private:
+  Command command_;
+  DrivingSettings settings_;
+};
+
 // Moves towards the window's middle when the corridors there are free enough, otherwise to the
 // safest; chooses the set-point that keeps the headway to whatever is ahead in the swath.
 class RuleBasedMop : public MotionPlanner {

@@ -159,11 +159,12 @@ TEST_F(Progress, NamesTheSideThatTheOtherWaitsFor) {
   const auto lines = [&](double for_actors, double for_weights, double for_replay) {
     TrainingProgress progress(Schedule(config()), 0, 0.0);
     EXPECT_EQ(progress.lines().size(), 2u);
-    progress.on_learner(line("MoP", 0,
-                             {{"time/wait_for_actors", for_actors},
-                              {"time/wait_for_replay", for_replay},
-                              {"replay/samples_per_insert", 31.96}}),
-                        1.0);
+    progress.on_learner(
+        line("MoP", 0,
+             {{"time/wait_for_actors", for_actors}, {"time/wait_for_replay", for_replay}}),
+        1.0);
+    progress.on_replay(line("MoP", 0, {{"replay/samples_per_insert", 31.96}}));
+    progress.on_replay(line("BP", 0, {{"replay/samples_per_insert", 1.0}}));
     progress.on_actor(
         line("MoP", 0, {{"time/wait_for_weights", for_weights}, {"time/wait_for_replay", 0.01}}));
     return progress.lines();

@@ -42,13 +42,8 @@ std::vector<ReplayRequest> replay_requests() {
           Save{"/runs/x/checkpoints/5.partial"}};
 }
 std::vector<ReplayReply> replay_replies() {
-  return {Joined{4, {2, std::vector<std::uint8_t>(999, 17)}},
-          Joined{},
-          Inserted{},
-          Opened{1, 2, 3, 4, 5},
-          Batch{2, floats(14), {8, 9}, {1.0F, 0.25F}},
-          Batch{},
-          Saved{}};
+  return {Joined{4, {2, std::vector<std::uint8_t>(999, 17)}}, Joined{}, Inserted{}, Opened{4},
+          Batch{2, floats(14), {8, 9}, {1.0F, 0.25F}},        Batch{},  Saved{}};
 }
 std::vector<LearnerRequest> learner_requests() {
   return {WeightsWanted{6}, SelectionOutcome{1, 2, 3, -4.5, 6}};

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <netdb.h>
 #include <spdlog/fmt/fmt.h>
 #include <sys/time.h>
 #include <unistd.h>
@@ -304,7 +305,8 @@ TEST(Endpoint, ForeignProtocolsAndRunsAreRefusedAndToldWhy) {
   raw.send_frames({encode(header), {}});
   EXPECT_FALSE(server.receive(Duration(100)));
   EXPECT_EQ(server.dropped(), 2U);
-  EXPECT_THAT(raw.receive().first.refusal, HasSubstr("protocol 1, you 99"));
+  EXPECT_THAT(raw.receive().first.refusal,
+              HasSubstr(fmt::format("protocol {}, you 99", kProtocolVersion)));
   EXPECT_THAT(raw.receive().first.refusal, HasSubstr("another run"));
 }
 
@@ -438,6 +440,11 @@ TEST(Endpoint, WhatIsNoAddressIsAFailure) {
 }
 
 TEST(Endpoint, HostNamesWorkOverTcp) {
+  addrinfo* found = nullptr;
+  if (getaddrinfo("localhost", nullptr, nullptr, &found) != 0) {
+    GTEST_SKIP() << "this machine has no name for itself (localhost in /etc/hosts)";
+  }
+  freeaddrinfo(found);
   zmq::context_t context;
   Address address;
   {

@@ -12,10 +12,19 @@ using testing::HasSubstr;
 using testing::ThrowsMessage;
 
 TEST(PlannerPairs, AreFoundByName) {
-  EXPECT_TRUE(planner_pair("hierarchical").learned_bp);
-  EXPECT_FALSE(planner_pair("rules+mop").learned_bp);
-  EXPECT_TRUE(planner_pair("rules+mop").learned_mop);
-  EXPECT_TRUE(planner_pair("sumo").world_drives);
+  EXPECT_EQ(planner_pair("hierarchical").bp, BpKind::kLearned);
+  EXPECT_EQ(planner_pair("rules+mop").bp, BpKind::kRules);
+  EXPECT_EQ(planner_pair("rules+mop").mop, MopKind::kLearned);
+  EXPECT_TRUE(planner_pair("sumo").world_drives());
+  EXPECT_FALSE(planner_pair("left+rules").world_drives());
+}
+
+TEST(PlannerPairs, ThePapersRowsAreEvaluatedByDefaultAndTheNaiveOnesOnRequest) {
+  for (const PlannerPair& pair : kPlannerPairs) {
+    const bool naive = pair.bp == BpKind::kAlwaysKeep || pair.bp == BpKind::kAlwaysLeft ||
+                       pair.bp == BpKind::kAlwaysRight;
+    EXPECT_EQ(pair.by_default, !naive) << pair.name;
+  }
 }
 
 TEST(PlannerPairs, AnUnknownNameIsAnsweredWithTheKnownOnes) {

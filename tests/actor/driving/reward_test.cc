@@ -118,12 +118,14 @@ TEST_F(MopRewardTest, IsZeroForFollowingInAWindowWithoutOpenCorridors) {
 }
 
 TEST_F(MopRewardTest, IsLessForAcceleratingAndBrakingWhateverElseIsEarned) {
+  const double penalty = kSettings.mop_reward.acceleration_penalty;
+  ASSERT_GT(penalty, 0.0);
   Scene scene{ego_in_the_middle(), {}};
   scene.ego.acceleration_mps2 = -4.0;
-  EXPECT_DOUBLE_EQ(reward(scene), -0.08);
+  EXPECT_DOUBLE_EQ(reward(scene), -4.0 * penalty);
   scene.ego.speed_mps = 13.0;
   scene.ego.acceleration_mps2 = 2.5;
-  EXPECT_DOUBLE_EQ(reward(scene), 0.95);
+  EXPECT_DOUBLE_EQ(reward(scene), 1.0 - 2.5 * penalty);
 }
 
 }  // namespace

@@ -215,7 +215,7 @@ TEST(RuleBasedBp, StaysBehindASlowLeaderWhereNoLaneIsFaster) {
 }
 
 TEST(RuleBasedBp, DoesNotChangeWithoutRoom) {
-  for (const double s_m : {110.0, 100.0, 92.0}) {  // ahead, beside, behind
+  for (const double s_m : {108.0, 100.0, 92.0}) {  // ahead, beside, behind
     RuleBasedBp bp(kSettings);
     const Vehicle left{.id = 2, .s_m = s_m, .d_m = 8.0, .speed_mps = 13.0};
     const Vehicle right{.id = 3, .s_m = s_m, .d_m = 1.6, .speed_mps = 13.0};
@@ -228,7 +228,7 @@ TEST(RuleBasedBp, MindsHowFastAFollowerClosesIn) {
   const Vehicle right{.id = 3, .s_m = 100.0, .d_m = 1.6, .speed_mps = 12.0};
   RuleBasedBp first(kSettings);
   EXPECT_EQ(decide(first, ego_at(4.8, 12.0), {slow_leader(), follower, right}), Command::kLeft);
-  follower.speed_mps = 19.0;
+  follower.speed_mps = 22.0;
   RuleBasedBp second(kSettings);
   EXPECT_EQ(decide(second, ego_at(4.8, 12.0), {slow_leader(), follower, right}), Command::kKeep);
 }
@@ -304,6 +304,21 @@ RandomDrive drive_at_random(RandomBp& bp, std::uint64_t episode_seed, int steps)
     corridor = next;
   }
   return drive;
+}
+
+TEST(ConstantBp, AsksForTheSameWhereThereIsALane) {
+  const Lanes lanes(kSettings);
+  ConstantBp left(Command::kLeft, kSettings);
+  ConstantBp right(Command::kRight, kSettings);
+  ConstantBp keep(Command::kKeep, kSettings);
+  for (int lane = 0; lane < lanes.lanes(); ++lane) {
+    const Situation situation =
+        situation_of({ego_at(lanes.lane_centre_m(lane), 10.0), {}}, kSettings);
+    const bool leftmost = lane == lanes.lanes() - 1;
+    EXPECT_EQ(left.decide(situation), leftmost ? Command::kKeep : Command::kLeft) << lane;
+    EXPECT_EQ(right.decide(situation), lane == 0 ? Command::kKeep : Command::kRight) << lane;
+    EXPECT_EQ(keep.decide(situation), Command::kKeep) << lane;
+  }
 }
 
 TEST(RandomBp, IsAFunctionOfTheEpisodesSeed) {

@@ -138,7 +138,7 @@ TEST_F(SumoWorldTest, ShowsEveryoneOnTheRoadWithinTheWindowAscendingById) {
   for (int step = 0; step < 300; ++step) {
     scene = world.step_by_world().scene;
     others += static_cast<double>(scene.others.size());
-    EXPECT_LE(scene.others.size(), 15u);
+    EXPECT_LE(scene.others.size(), static_cast<std::size_t>(config_.traffic.vehicles_max));
     int last_id = 0;
     for (const Vehicle& vehicle : scene.others) {
       EXPECT_GT(vehicle.id, last_id);
@@ -149,7 +149,7 @@ TEST_F(SumoWorldTest, ShowsEveryoneOnTheRoadWithinTheWindowAscendingById) {
       EXPECT_GE(vehicle.speed_mps, 0.0);
     }
   }
-  EXPECT_GE(others / 300, 11.5);  // some wait for room
+  EXPECT_GE(others / 300, config_.traffic.vehicles_min - 1.5);  // some wait for room
 }
 
 TEST_F(SumoWorldTest, ShowsEachVehicleMovedByItsSpeedsOverTheLastStep) {

@@ -53,8 +53,11 @@ TEST(Traffic, BeginsWithADrawnNumberOfVehiclesWithinTheWindow) {
     EXPECT_THAT(change.leaving, IsEmpty());
     counts.insert(scene.others.size() + change.entering.size());
   }
-  EXPECT_LE(*counts.rbegin(), 15u);
-  EXPECT_TRUE(counts.contains(13) && counts.contains(14) && counts.contains(15));
+  const TrafficSettings settings = scenario().traffic;
+  EXPECT_LE(*counts.rbegin(), static_cast<std::size_t>(settings.vehicles_max));
+  for (int count = settings.vehicles_min; count <= settings.vehicles_max; ++count) {
+    EXPECT_TRUE(counts.contains(static_cast<std::size_t>(count))) << count;
+  }
 }
 
 TEST(Traffic, LeavesEveryoneRoomToBrake) {
