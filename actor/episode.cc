@@ -60,11 +60,12 @@ StepOutcome Episode::advance(const world::StepResult& result) {
   const int lane = lanes_.lane_at(after.d_m);
   StepOutcome outcome;
   outcome.bp_reward = driving::bp_reward(lane_before, after, settings_);
+  outcome.lane_changed = lane != lane_before;
 
   ++summary_.steps;
   summary_.bp_reward += outcome.bp_reward;
   summary_.collision = result.collision;
-  summary_.lane_changes += lane != lane_before;
+  summary_.lane_changes += outcome.lane_changed;
   summary_.hard_brakes += after.acceleration_mps2 < -kHardBrake_mps2;
   summary_.distance_m += after.s_m - before.s_m;
   ++summary_.lane_steps[static_cast<std::size_t>(lane)];

@@ -18,6 +18,7 @@ namespace corridor::actor {
 struct StepOutcome {
   double bp_reward = 0.0;       // as in the paper: no shaping
   double mop_reward = 0.0;      // 0 where the world drives
+  bool lane_changed = false;
   bool entered_closed = false;  // the ego went into a corridor that was closed: over for learning
   bool episode_ended = false;   // by a collision or the step limit
 };

@@ -1,6 +1,7 @@
 #include "actor/rollout.h"
 
 #include "actor/driving/observation.h"
+#include "actor/driving/reward.h"
 #include "actor/planners.h"
 #include "proto/failure.h"
 
@@ -104,15 +105,15 @@ void PhaseRollout::step(std::int64_t own_step, std::optional<std::uint8_t> recor
 
   const bool collided = episode_.summary().collision.has_value();
   double reward = outcome.mop_reward;
+  double shaping = 0.0;
   int chosen = action.mop_action;
   bool terminal = collided || outcome.entered_closed;
   if (phase_ == Phase::kBp) {
     reward = outcome.bp_reward;
+    shaping = driving::bp_shaping(collided, outcome.lane_changed, config_.bp_reward);
     chosen = static_cast<int>(action.command);
     terminal = collided;
   }
-  const double shaping =
-      phase_ == Phase::kBp && collided ? config_.bp_reward.collision_shaping : 0.0;
   transitions_.push(observation_, chosen, reward + shaping, terminal);
 
   ++totals_.steps;

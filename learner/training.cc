@@ -3,6 +3,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <thread>
 #include <utility>
@@ -37,6 +38,18 @@ std::string list(const std::vector<std::uint32_t>& numbers) {
 }
 
 }  // namespace
+
+std::vector<float> running_average(std::vector<float> average, const std::vector<float>& newest,
+                                   std::uint32_t updates, std::uint64_t window_updates) {
+  CORRIDOR_CHECK(average.size() == newest.size(), "{} and {}", average.size(), newest.size());
+  if (window_updates == 0) return newest;
+  const auto kept = static_cast<float>(
+      std::exp(-static_cast<double>(updates) / static_cast<double>(window_updates)));
+  for (std::size_t i = 0; i < average.size(); ++i) {
+    average[i] = newest[i] + kept * (average[i] - newest[i]);
+  }
+  return average;
+}
 
 LearnerState load_state(const RunConfig& config, const RunDirectory& directory) {
   const std::optional<std::filesystem::path> checkpoint = directory.newest_checkpoint();
@@ -91,7 +104,7 @@ bool Training::train_round(std::uint64_t round) {
     return false;
   }
   const BlockResult result = train_block(round, *opened);
-  finish_block(round);
+  finish_block(round, opened->batches);
   report(round, *opened, result);
   selected_.reset();
   return true;
@@ -171,14 +184,19 @@ Training::BlockResult Training::train_block(std::uint64_t round, const Opened& o
   return result;
 }
 
-void Training::finish_block(std::uint64_t round) {
+void Training::finish_block(std::uint64_t round, std::uint32_t updates) {
   const Clock::time_point start = Clock::now();
   const bool last_of_phase =
       round + 1 == schedule_.first_round(phase_) + schedule_.rounds_of(phase_);
   Weights next = state_.published.back();
   next.version = round + 1;
   std::vector<float>& learned = phase_ == Phase::kMop ? next.mop : next.bp;
-  learned = last_of_phase && state_.best ? state_.best->parameters : td_->parameters();
+  // What was published last is the average so far; a window never reaches back before the phase.
+  const auto window_updates = static_cast<std::uint64_t>(dqn().averaging_updates);
+  learned = last_of_phase && state_.best
+                ? state_.best->parameters
+                : running_average(std::move(learned), td_->parameters(), updates,
+                                  std::min(window_updates, td_->updates()));
   state_.published.push_back(next);
   if (state_.published.size() > 2) state_.published.erase(state_.published.begin());
   state_.next_round = round + 1;

@@ -7,6 +7,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "learner/checkpoint.h"
 #include "learner/publisher.h"
@@ -28,6 +29,12 @@ struct Surroundings {
   std::function<bool()> stop_requested;
   Duration stop_patience{1500};  // asked to stop: how long to wait for a block's last chunks
 };
+
+// `average` after so many more updates that led to `newest`: what it held counts exp(-updates /
+// window_updates), the newest weights the rest. A window of 0: the newest alone. Equal sizes
+// (CHECK).
+std::vector<float> running_average(std::vector<float> average, const std::vector<float>& newest,
+                                   std::uint32_t updates, std::uint64_t window_updates);
 
 // The newest checkpoint's state, else the initial one. Throws Failure when the checkpoint is
 // damaged or the configuration has changed.
@@ -64,7 +71,7 @@ class Training {
 
   BlockResult train_block(std::uint64_t round, const Opened& opened);
   void consider(const SelectionOutcome& outcome);
-  void finish_block(std::uint64_t round);
+  void finish_block(std::uint64_t round, std::uint32_t updates);
   void begin_phase(TdState initial);
   void checkpoint();
   void report(std::uint64_t round, const Opened& opened, const BlockResult& result);

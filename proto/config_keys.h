@@ -116,6 +116,8 @@ void describe(BpRewardSettings& reward, Visitor& v) {
   v.number("left_change", reward.left_change, -1000.0, 1000.0, "");
   v.number("collision_shaping", reward.collision_shaping, -1000.0, 0.0,
            "in training only; not the paper's, not reported");
+  v.number("lane_change_shaping", reward.lane_change_shaping, -1000.0, 0.0,
+           "likewise, on a change to either side");
 }
 
 template <typename Visitor>
@@ -159,6 +161,8 @@ void describe_training(DqnSettings& dqn, Visitor& v) {
   v.number("samples_per_insert", dqn.samples_per_insert, 0.001, 10'000.0,
            "rows trained on for each row stored");
   v.number("target_copy_updates", dqn.target_copy_updates, 1, 10'000'000, "");
+  v.number("averaging_updates", dqn.averaging_updates, 0, 10'000'000,
+           "weights that drive: a running average over about so many updates; 0: none");
   v.number("learning_rate", dqn.learning_rate, 1e-12, 1.0, "falls linearly over the phase");
   v.number("learning_rate_end", dqn.learning_rate_end, 0.0, 1.0, "");
   v.number("adam_epsilon", dqn.adam_epsilon, 1e-15, 1.0, "");

@@ -60,8 +60,8 @@ struct EgoSettings {
 // [planner] The state-action abstraction of paper section III-C.
 struct PlannerSettings {
   int corridors_per_lane = 5;  // N_c: odd, so that there is a middle
-  std::vector<double> speed_changes_mps = {-4.0, -1.0, 0.0, 1.0,
-                                           2.0};  // of the set-point, ascending
+  std::vector<double> speed_changes_mps = {-4.0, -2.0, -1.0, 0.0,
+                                           1.0,  2.0};  // of the set-point, ascending
   double corridor_change_s = 1.0;                 // time to move over by one corridor
   double gap_range_m = 100.0;
   double side_clearance_m = 0.15;  // added to each side of the ego in a corridor's swath
@@ -84,8 +84,9 @@ struct MopRewardSettings {
 struct BpRewardSettings {
   std::vector<double> thresholds_mps = {10.0, 11.0, 12.0};  // one a lane, from the right
   double left_change = -5.0;
-  // Added on a collision in training only; not in the paper, never part of a reported reward.
-  double collision_shaping = -10.0;
+  // Shaping: added in training only; not in the paper, never part of a reported reward.
+  double collision_shaping = -10.0;   // on a collision
+  double lane_change_shaping = -3.0;  // on a lane change, to either side
 };
 
 // [rules] The rule-based planners (actor/driving/rules.h).
@@ -124,6 +125,10 @@ struct DqnSettings {
   double learning_rate_end = 5e-5;
   double adam_epsilon = 1e-8;
   double huber_delta = 1.0;
+  // The weights that drive are a running average of the trained ones over about the last so many
+  // updates (Polyak and Juditsky 1992): a single iterate's noise makes a BP change lanes needlessly.
+  // 0: the trained weights themselves.
+  int averaging_updates = 2500;
   double gradient_norm_max = 10.0;
   // Exploration: linear from `epsilon` to `epsilon_end` in `epsilon_steps` (of the phase, all
   // actors together). Actor i of N ends at epsilon_end^(1 + epsilon_ladder * i / (N - 1)).
@@ -150,10 +155,10 @@ inline DqnSettings bp_defaults() {
   DqnSettings settings;
   settings.steps = 400'000;
   settings.gamma = 0.99;
-  settings.n_step = 20;  // a lane change takes five steps and pays only later
+  settings.n_step = 10;  // a lane change takes five steps and pays only later
   settings.reward_scale = 0.1;
   settings.epsilon_end = 0.01;
-  settings.exploration_hold_max = 20;
+  settings.exploration_hold_max = 8;
   return settings;
 }
 

@@ -35,6 +35,11 @@ double bp_reward(int lane_before, const Ego& after, const DrivingSettings& setti
   return after.speed_mps > thresholds_mps[static_cast<std::size_t>(lane)] ? 1.0 : 0.0;
 }
 
+double bp_shaping(bool collided, bool lane_changed, const BpRewardSettings& settings) {
+  return (collided ? settings.collision_shaping : 0.0) +
+         (lane_changed ? settings.lane_change_shaping : 0.0);
+}
+
 double mop_reward(const Scene& after, const std::vector<CorridorGaps>& gaps, const Window& window,
                   const DrivingSettings& settings) {
   const Lanes lanes(settings);

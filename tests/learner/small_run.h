@@ -49,6 +49,8 @@ inline RunConfig small_config() {
     dqn.target_copy_updates = 5;
     dqn.learning_rate = 1e-2;
   }
+  config.dqn[0].averaging_updates = 10;
+  config.dqn[1].averaging_updates = 0;
   config.dqn[0].steps = kMopRounds * kActors * kRowsPerChunk;
   config.dqn[1].steps = kBpRounds * kActors * kRowsPerChunk;
   config.dqn[1].dueling = true;

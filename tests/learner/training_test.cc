@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
@@ -53,6 +54,42 @@ TEST(Training, TrainsBothPhasesToTheEnd) {
   EXPECT_NE(run.weights.at(4).mop, start.published[0].mop);
   EXPECT_EQ(run.weights.at(4).bp, start.published[0].bp);
   EXPECT_NE(run.weights.at(9).bp, start.published[0].bp);
+}
+
+TEST(RunningAverage, ForgetsAnEthInEachWindowHoweverTheUpdatesAreDivided) {
+  const std::vector<float> newest = {1.0f, -2.0f};
+  std::vector<float> average = {0.0f, 0.0f};
+  for (int block = 0; block < 5; ++block) average = running_average(average, newest, 20, 100);
+  const float part = 1.0f - std::exp(-1.0f);
+  EXPECT_NEAR(average[0], part, 1e-6);
+  EXPECT_NEAR(average[1], -2.0f * part, 1e-6);
+  EXPECT_EQ(running_average(average, newest, 0, 100), average);
+  EXPECT_EQ(running_average(average, newest, 1, 0), newest);
+}
+
+TEST(Training, PublishesTheRunningAverageOfWhatItTrains) {
+  Place plain, averaged;
+  RunConfig config = small_config();
+  config.dqn[0].averaging_updates = 0;
+  SmallRun last(config, plain.directory);
+  last.stop_at_version = 4;
+  last.run();
+  SmallRun mean(small_config(), averaged.directory);
+  mean.stop_at_version = 4;
+  mean.run();
+  // The chunks follow the weights that drive: the first version with updates is comparable.
+  std::uint64_t first = 1;
+  while (last.weights.at(first).mop == last.weights.at(0).mop) ++first;
+  const std::vector<float>& start = last.weights.at(0).mop;
+  const std::vector<float>& trained = last.weights.at(first).mop;
+  const std::vector<float>& driven = mean.weights.at(first).mop;
+  double moved = 0.0, moved_in_training = 0.0;
+  for (std::size_t i = 0; i < start.size(); ++i) {
+    moved += std::abs(driven[i] - start[i]);
+    moved_in_training += std::abs(trained[i] - start[i]);
+  }
+  EXPECT_GT(moved, 0.0);
+  EXPECT_LT(moved, moved_in_training);
 }
 
 TEST(Training, FreezesTheBestMopForTheBpsPhase) {

@@ -32,6 +32,16 @@ TEST(BpReward, DoesNotPunishAChangeToTheRight) {
   EXPECT_EQ(bp_reward(2, ego, kSettings), 1.0);
 }
 
+TEST(BpShaping, AddsUpWhatHappenedInTheStep) {
+  BpRewardSettings settings;
+  settings.collision_shaping = -10.0;
+  settings.lane_change_shaping = -2.0;
+  EXPECT_EQ(bp_shaping(false, false, settings), 0.0);
+  EXPECT_EQ(bp_shaping(true, false, settings), -10.0);
+  EXPECT_EQ(bp_shaping(false, true, settings), -2.0);
+  EXPECT_EQ(bp_shaping(true, true, settings), -12.0);
+}
+
 // The middle lane's window, the ego in its middle at `speed_mps`, a leader `gap_m` ahead.
 struct MopRewardTest : testing::Test {
   static double reward(const Scene& scene, Command command = Command::kKeep) {
