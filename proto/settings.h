@@ -73,10 +73,11 @@ struct MopRewardSettings {
   double speed_tolerance_mps = 1.5;
   double headway_s = 1.2;         // tau
   double standstill_gap_m = 3.0;  // d0
-  // The smallest front gap is near d when in [near_low * d, near_high * d + near_high_offset_m].
+  // The smallest front gap is near d when in [near_low * d, near_high * d + near_high_offset_m]. A
+  // wider range leaves it to chance how far back a MoP follows (docs/results.md).
   double near_low = 0.6;
-  double near_high = 1.5;
-  double near_high_offset_m = 5.0;
+  double near_high = 1.0;
+  double near_high_offset_m = 2.0;
   double acceleration_penalty = 0.05;  // for each m/s2
 };
 
@@ -86,7 +87,7 @@ struct BpRewardSettings {
   double left_change = -5.0;
   // Shaping: added in training only; not in the paper, never part of a reported reward.
   double collision_shaping = -10.0;   // on a collision
-  double lane_change_shaping = -3.0;  // on a lane change, to either side
+  double lane_change_shaping = -5.0;  // on a lane change, to either side
 };
 
 // [rules] The rule-based planners (actor/driving/rules.h).

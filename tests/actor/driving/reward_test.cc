@@ -87,8 +87,8 @@ TEST_F(MopRewardTest, IsOneForFollowingNearTheSafeDistance) {
   EXPECT_EQ(reward(following(8.0, 12.6)), 1.0);
   EXPECT_EQ(reward(following(8.0, 7.57)), 1.0);
   EXPECT_EQ(reward(following(8.0, 7.55)), 0.0);
-  EXPECT_EQ(reward(following(8.0, 23.89)), 1.0);
-  EXPECT_EQ(reward(following(8.0, 23.91)), 0.0);
+  EXPECT_EQ(reward(following(8.0, 14.59)), 1.0);
+  EXPECT_EQ(reward(following(8.0, 14.61)), 0.0);
 }
 
 TEST_F(MopRewardTest, IsOneAtStandstillBehindAStandingLeader) {
