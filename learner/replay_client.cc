@@ -24,6 +24,21 @@ Reply expect(const Bytes& body) {
       "the replay server answered another question: do all processes run the same build?");
 }
 
+// `batch` becomes rows first, first + n, first + 2n ... of `drawn`.
+void every_nth(const Batch& drawn, std::size_t first, std::size_t n, Batch& batch) {
+  const std::size_t stride = drawn.rows.size() / drawn.keys.size();
+  batch.observations = drawn.observations;
+  batch.rows.clear();
+  batch.keys.clear();
+  batch.weights.clear();
+  for (std::size_t row = first; row < drawn.keys.size(); row += n) {
+    const auto from = drawn.rows.begin() + static_cast<std::ptrdiff_t>(row * stride);
+    batch.rows.insert(batch.rows.end(), from, from + static_cast<std::ptrdiff_t>(stride));
+    batch.keys.push_back(drawn.keys[row]);
+    batch.weights.push_back(drawn.weights[row]);
+  }
+}
+
 }  // namespace
 
 ReplayClient::ReplayClient(Client& client, std::function<void()> on_wait)
@@ -73,20 +88,33 @@ Batch ReplayClient::receive_batch(std::size_t rows) {
 
 void ReplayClient::run_block(const Block& block,
                              const std::function<std::vector<float>(const Batch&)>& train) {
-  const auto ahead = std::min(block.batches, static_cast<std::uint32_t>(kDepth));
-  for (std::uint32_t i = 0; i < ahead; ++i) {
-    send(Step{{}, {}, block.batch_size, block.importance_exponent});
+  const std::uint32_t together = std::max(1u, kRowsPerStep / block.batch_size);
+  const std::uint32_t steps = (block.batches + together - 1) / together;
+  // Steps past the last one draw nothing: they bring priorities only.
+  const auto batches_of = [&](std::uint32_t step) {
+    return step < steps ? std::min(together, block.batches - step * together) : 0;
+  };
+  const auto step = [&](std::uint32_t index) {
+    return Step{{}, {}, batches_of(index) * block.batch_size, block.importance_exponent};
+  };
+  for (std::uint32_t i = 0; i < std::min(steps, kDepth); ++i) send(step(i));
+  for (std::uint32_t i = 0; i < steps; ++i) {
+    Batch drawn = receive_batch(batches_of(i) * block.batch_size);
+    Step next = step(i + kDepth);
+    next.priorities.resize(drawn.keys.size());
+    for (std::uint32_t b = 0; b < batches_of(i); ++b) {
+      every_nth(drawn, b, batches_of(i), batch_);
+      const std::vector<float> priorities = train(batch_);
+      CORRIDOR_CHECK(priorities.size() == block.batch_size, "{} priorities for {} rows",
+                     priorities.size(), block.batch_size);
+      for (std::size_t row = 0; row < priorities.size(); ++row) {
+        next.priorities[b + row * batches_of(i)] = priorities[row];
+      }
+    }
+    next.keys = std::move(drawn.keys);
+    send(next);
   }
-  for (std::uint32_t i = 0; i < block.batches; ++i) {
-    Batch batch = receive_batch(block.batch_size);
-    std::vector<float> priorities = train(batch);
-    CORRIDOR_CHECK(priorities.size() == batch.keys.size(), "{} priorities for {} keys",
-                   priorities.size(), batch.keys.size());
-    // The last steps bring priorities only.
-    const std::uint32_t count = i + kDepth < block.batches ? block.batch_size : 0;
-    send(Step{std::move(batch.keys), std::move(priorities), count, block.importance_exponent});
-  }
-  for (std::uint32_t i = 0; i < ahead; ++i) receive_batch(0);
+  for (std::uint32_t i = 0; i < std::min(steps, kDepth); ++i) receive_batch(0);
 }
 
 void ReplayClient::save(const std::filesystem::path& directory) {

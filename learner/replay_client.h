@@ -13,9 +13,13 @@
 
 namespace corridor::learner {
 
-// Steps under way at a time. Batch i + kDepth is drawn with the priorities of batches 0 .. i,
-// whatever the timing, and the learner trains on one batch while the server draws the next.
-inline constexpr std::size_t kDepth = 4;
+// A Step draws batches of about so many rows at once: a message each would cost as much as the
+// training on a batch of 64.
+inline constexpr std::uint32_t kRowsPerStep = 512;
+
+// Steps under way at a time. Step i + kDepth is drawn with the priorities of steps 0 .. i, whatever
+// the timing, and the learner trains on one step's batches while the server draws the next.
+inline constexpr std::uint32_t kDepth = 2;
 
 struct Block {
   std::uint32_t batches = 0;  // as granted
@@ -36,8 +40,9 @@ class ReplayClient {
   // then stands unanswered, and this object and its client are good for nothing more.
   std::optional<Opened> open_block(std::uint64_t round, const std::function<bool()>& give_up);
 
-  // Draws the block's batches one after the other; `train` returns a batch's new priorities, one a
-  // row. At its return the server has all priorities.
+  // Draws the block's batches and trains on one after the other; `train` returns a batch's new
+  // priorities, one a row. Batch b of a step's n has its rows b, b + n, b + 2n ...: each is a
+  // stratified draw of its own. At its return the server has all priorities.
   void run_block(const Block& block, const std::function<std::vector<float>(const Batch&)>& train);
 
   // Between blocks.
@@ -55,6 +60,7 @@ class ReplayClient {
   Client& client_;
   std::function<void()> on_wait_;
   double waited_s_ = 0.0;
+  Batch batch_;  // scratch of run_block
 };
 
 }  // namespace corridor::learner

@@ -9,7 +9,7 @@
 namespace corridor {
 
 // Raised with every change of proto/wire.capnp or of a meaning in it.
-inline constexpr std::uint32_t kProtocolVersion = 2;
+inline constexpr std::uint32_t kProtocolVersion = 3;
 
 using Bytes = std::vector<std::byte>;
 

@@ -70,7 +70,8 @@ struct ReplayRequest {
     }
 
     step :group {
-      # learner: apply the new priorities of an earlier batch, then draw a new one.
+      # learner: apply the new priorities of an earlier answer, then draw anew, more often than
+      # there are rows if so many are wanted.
       # Only in an open block. Answer: batch.
       keys @7 :Data;            # uint64, as they came in an earlier batch; may be empty
       priorities @8 :Data;      # float32 |TD error|, one a key; finite, >= 0

@@ -126,8 +126,8 @@ Outcome ReplayService::answer(ClientId, const Step& request) {
   if (!std::isfinite(request.importance_exponent) || request.importance_exponent < 0.0) {
     return refused("an importance exponent of {}", request.importance_exponent);
   }
-  if (request.count > store_.size()) {
-    return refused("{} rows wanted of {} held", request.count, store_.size());
+  if (request.count > 0 && store_.size() == 0) {
+    return refused("{} rows wanted, none held", request.count);
   }
   if (request.count * store_.layout().stride() * sizeof(float) > kBatchBytesMax) {
     return refused("{} rows wanted, more than a message holds", request.count);

@@ -61,47 +61,74 @@ struct Connection {
   ReplayClient replay{client, [this] { ++waits; }};
 };
 
-// Batch n has the keys 10 n, 10 n + 1, ...
+// Keys count on from 0; a row's values are its key.
 std::function<std::optional<ReplayReply>(const ReplayRequest&)> batches() {
-  return [number = 0](const ReplayRequest& request) mutable -> std::optional<ReplayReply> {
-    const auto& step = std::get<Step>(request);
+  return [key = std::uint64_t{0}](const ReplayRequest& request) mutable
+             -> std::optional<ReplayReply> {
     Batch batch;
     batch.observations = 1;
-    for (std::uint32_t i = 0; i < step.count; ++i) {
-      batch.keys.push_back(static_cast<std::uint64_t>(10 * number) + i);
-      batch.weights.push_back(1.0f);
-      batch.rows.insert(batch.rows.end(), {0.0f, 0.0f, 0.0f, 0.0f, 0.0f});
+    for (std::uint32_t i = 0; i < std::get<Step>(request).count; ++i, ++key) {
+      batch.keys.push_back(key);
+      batch.weights.push_back(static_cast<float>(key));
+      batch.rows.insert(batch.rows.end(), RowLayout{1}.stride(), static_cast<float>(key));
     }
-    if (step.count > 0) ++number;
     return batch;
   };
 }
+
+constexpr std::uint32_t kBatchSize = 64;
+constexpr std::uint32_t kBatchesPerStep = kRowsPerStep / kBatchSize;
 
 std::vector<float> key_as_priority(const Batch& batch) {
   return {batch.keys.begin(), batch.keys.end()};
 }
 
-TEST(ReplayClient, SendsABatchsPrioritiesWithTheStepSoManyLater) {
+TEST(ReplayClient, SendsAStepsPrioritiesWithTheStepSoManyLater) {
   ScriptedServer server(batches());
   Connection connection(server);
-  std::vector<std::uint64_t> trained;
-  constexpr std::uint32_t kBatches = kDepth + 2;
-  connection.replay.run_block({kBatches, 2, 0.5}, [&](const Batch& batch) {
-    trained.push_back(batch.keys[0]);
+  constexpr std::uint32_t kSteps = kDepth + 2;
+  std::size_t trained = 0;
+  connection.replay.run_block({kSteps * kBatchesPerStep, kBatchSize, 0.5}, [&](const Batch& batch) {
+    ++trained;
     return key_as_priority(batch);
   });
-  ASSERT_EQ(trained.size(), kBatches);
+  EXPECT_EQ(trained, kSteps * kBatchesPerStep);
   EXPECT_EQ(connection.client.unanswered(), 0u);
-  std::vector<ReplayRequest> expected(kDepth, Step{{}, {}, 2, 0.5});
-  for (std::uint32_t i = 0; i < kBatches; ++i) {
-    EXPECT_EQ(trained[i], 10 * i);
-    const std::uint64_t key = 10 * i;
-    expected.push_back(Step{{key, key + 1},
-                            {static_cast<float>(key), static_cast<float>(key + 1)},
-                            i + kDepth < kBatches ? 2u : 0u,
-                            0.5});
+  std::vector<ReplayRequest> expected(kDepth, Step{{}, {}, kRowsPerStep, 0.5});
+  for (std::uint32_t i = 0; i < kSteps; ++i) {
+    Step step{{}, {}, i + kDepth < kSteps ? kRowsPerStep : 0u, 0.5};
+    for (std::uint32_t row = 0; row < kRowsPerStep; ++row) {
+      step.keys.push_back(i * kRowsPerStep + row);
+    }
+    step.priorities.assign(step.keys.begin(), step.keys.end());
+    expected.push_back(step);
   }
   EXPECT_EQ(server.end(), expected);
+}
+
+TEST(ReplayClient, DealsAStepsRowsOutToItsBatches) {
+  ScriptedServer server(batches());
+  Connection connection(server);
+  // A whole step, and one of 3 batches.
+  std::vector<Batch> trained;
+  connection.replay.run_block({kBatchesPerStep + 3, kBatchSize, 0.5}, [&](const Batch& batch) {
+    trained.push_back(batch);
+    return key_as_priority(batch);
+  });
+  ASSERT_EQ(trained.size(), kBatchesPerStep + 3);
+  for (std::uint32_t i = 0; i < trained.size(); ++i) {
+    const bool last = i >= kBatchesPerStep;
+    const Batch& batch = trained[i];
+    ASSERT_EQ(batch.keys.size(), kBatchSize);
+    for (std::uint32_t row = 0; row < kBatchSize; ++row) {
+      const std::uint64_t key = last ? kRowsPerStep + (i - kBatchesPerStep) + 3 * row
+                                     : i + kBatchesPerStep * row;
+      EXPECT_EQ(batch.keys[row], key);
+      EXPECT_EQ(batch.weights[row], static_cast<float>(key));
+      EXPECT_EQ(batch.rows[row * RowLayout{1}.stride()], static_cast<float>(key));
+    }
+    EXPECT_EQ(batch.rows.size(), kBatchSize * RowLayout{1}.stride());
+  }
 }
 
 TEST(ReplayClient, RunsBlocksOfOneBatchAndOfNone) {

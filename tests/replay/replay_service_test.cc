@@ -283,7 +283,7 @@ TEST_F(ReplayServiceTest, StepsThatMakeNoSenseAreRefusedAndLeaveNoTrace) {
   }
   EXPECT_THAT(refusal({{100, UINT64_MAX}, {1.0F, 1.0F}, 8, 0.4}), HasSubstr("for key"));
   EXPECT_THAT(refusal({{100}, {1.0F, 1.0F}, 8, 0.4}), HasSubstr("1 keys, 2 priorities"));
-  EXPECT_THAT(refusal({{100}, {1.0F}, 151, 0.4}), HasSubstr("151 rows wanted of 150"));
+  EXPECT_THAT(refusal({{100}, {1.0F}, UINT32_MAX, 0.4}), HasSubstr("more than a message holds"));
   EXPECT_THAT(refusal({{100}, {1.0F}, 8, nan}), HasSubstr("exponent"));
   EXPECT_THAT(refusal({{100}, {1.0F}, 8, -0.1}), HasSubstr("exponent"));
   EXPECT_EQ(saved_bytes(service), saved_bytes(untouched));
