@@ -12,6 +12,7 @@
 #include "proto/run_config.h"
 #include "proto/run_directory.h"
 #include "proto/tensor_file.h"
+#include "proto/time_account.h"
 
 namespace {
 
@@ -67,13 +68,15 @@ int redrive(const Arguments& arguments, const RunConfig& config, world::World& w
 int run(const Arguments& arguments) {
   const RunDirectory directory = RunDirectory::open(arguments.run);
   const RunConfig config = load_run_config(directory.config());
-  world::SumoWorld world(world::world_settings(config), directory.network(), directory.routes());
+  TimeAccount time;
+  world::SumoWorld world(world::world_settings(config), directory.network(), directory.routes(),
+                         time);
   if (!arguments.episode.empty()) return redrive(arguments, config, world);
   if (!arguments.planners.empty()) return evaluate(arguments, config, directory, world);
   if (arguments.index < 0 || arguments.index >= config.run.actors) {
     throw Failure("--index {} is none of the run's {} actors", arguments.index, config.run.actors);
   }
-  actor::train(config, directory, arguments.index, world);
+  actor::train(config, directory, arguments.index, world, time);
   return 0;
 }
 

@@ -10,7 +10,7 @@ namespace corridor::actor {
 using driving::Command;
 
 PhaseRollout::PhaseRollout(const RunConfig& config, int actor, world::World& world,
-                           std::uint64_t next_round, const OpenEpisode& open)
+                           TimeAccount& time, std::uint64_t next_round, const OpenEpisode& open)
     : config_(config),
       driving_(driving_settings(config)),
       schedule_(config),
@@ -25,7 +25,8 @@ PhaseRollout::PhaseRollout(const RunConfig& config, int actor, world::World& wor
                    config.phase(phase_).gamma, config.phase(phase_).reward_scale),
       episode_index_(open.episode),
       observation_(static_cast<std::size_t>(config.shape(phase_).observations)),
-      mop_observation_(static_cast<std::size_t>(config.shape(Phase::kMop).observations)) {
+      mop_observation_(static_cast<std::size_t>(config.shape(Phase::kMop).observations)),
+      time_(time) {
   const auto rounds_before = static_cast<std::int64_t>(next_round - schedule_.first_round(phase_));
   const auto recorded = static_cast<std::int64_t>(open.actions.size());
   std::int64_t own_step = rounds_before * config.schedule.steps_per_round - recorded;
@@ -58,7 +59,9 @@ Insert PhaseRollout::drive_round(const Weights& weights) {
   chunk.round = next_round_++;
   chunk.observations = static_cast<std::uint32_t>(observation_.size());
   chunk.rows = transitions_.take_rows();
+  time_.charge(TimePart::kPlan);
   chunk.priorities = policy::td_errors(chunk.rows, phase_ == Phase::kMop ? *mop_ : *bp_);
+  time_.charge(TimePart::kInfer);
   chunk.open.episode = episode_index_;
   if (episode_open_) chunk.open.actions = episode_.actions();
   return chunk;
@@ -147,16 +150,24 @@ driving::StepAction PhaseRollout::decide(std::optional<int> random_action,
     action.command = command;
     observe(command);
     if (!recorded) {
-      action.mop_action = random_action ? *random_action : mop_->greedy(observation_);
+      action.mop_action = random_action ? *random_action : greedy(*mop_, observation_);
     }
     return action;
   }
   observe(action.command);
   if (recorded) return action;
-  action.command = static_cast<Command>(random_action ? *random_action : bp_->greedy(observation_));
+  action.command =
+      static_cast<Command>(random_action ? *random_action : greedy(*bp_, observation_));
   driving::observe_mop(situation.scene, situation.gaps, episode_.window(action.command), driving_,
                        mop_observation_);
-  action.mop_action = mop_->greedy(mop_observation_);
+  action.mop_action = greedy(*mop_, mop_observation_);
+  return action;
+}
+
+int PhaseRollout::greedy(policy::QNetwork& network, const std::vector<float>& observation) {
+  time_.charge(TimePart::kPlan);
+  const int action = network.greedy(observation);
+  time_.charge(TimePart::kInfer);
   return action;
 }
 

@@ -13,6 +13,7 @@
 #include "actor/policy/q_network.h"
 #include "proto/messages.h"
 #include "proto/schedule.h"
+#include "proto/time_account.h"
 
 namespace corridor::actor {
 
@@ -27,13 +28,14 @@ struct RolloutTotals {
 };
 
 // One phase of one actor. What it does is a function of (config, actor, round, the open episode it
-// starts from, the weights). One thread owns it; `config` and `world` outlive it.
+// starts from, the weights). One thread owns it; `config`, `world` and `time` outlive
+// it.
 class PhaseRollout {
  public:
   // Stands before `next_round` with the open episode of the rounds before: drives it again up to
   // where it was. Throws Failure when the recorded actions cannot be this run's.
-  PhaseRollout(const RunConfig& config, int actor, world::World& world, std::uint64_t next_round,
-               const OpenEpisode& open);
+  PhaseRollout(const RunConfig& config, int actor, world::World& world, TimeAccount& time,
+               std::uint64_t next_round, const OpenEpisode& open);
 
   // Drives the next round with these weights, exploring.
   Insert drive_round(const Weights& weights);
@@ -53,6 +55,7 @@ class PhaseRollout {
   void step(std::int64_t own_step, std::optional<std::uint8_t> recorded);
   driving::StepAction decide(std::optional<int> random_action,
                              const std::optional<std::uint8_t>& recorded);
+  int greedy(policy::QNetwork& network, const std::vector<float>& observation);
   // What the planner in training sees now, given the command where that is the MoP.
   void observe(driving::Command command);
   void cut_off_episode();
@@ -77,6 +80,7 @@ class PhaseRollout {
   std::vector<float> observation_;      // of the planner in training
   std::vector<float> mop_observation_;  // of the frozen MoP, in the BP phase
   RolloutTotals totals_;
+  TimeAccount& time_;
 };
 
 }  // namespace corridor::actor

@@ -19,12 +19,6 @@
 namespace corridor::actor {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
 // How long one look at a socket may last before the stop flag is looked at.
 constexpr Duration kPatience{100};
 // Steps of the phase, all actors together, between two lines of metrics.
@@ -44,19 +38,14 @@ Reply expect(Variant reply, const char* peer) {
   throw Failure("the {} answered with a message that was not asked for", peer);
 }
 
-// Where an actor's time went since the last line of metrics.
-struct Times {
-  double drive_s = 0.0;
-  double wait_for_weights_s = 0.0;
-  double wait_for_replay_s = 0.0;
-};
-
 class Trainer {
  public:
-  Trainer(const RunConfig& config, const RunDirectory& directory, int actor, world::World& world)
+  Trainer(const RunConfig& config, const RunDirectory& directory, int actor, world::World& world,
+          TimeAccount& time)
       : config_(config),
         actor_(actor),
         world_(world),
+        time_(time),
         schedule_(config),
         metrics_(directory.metrics(fmt::format("actor-{}", actor))),
         replay_(make_client(directory, true)),
@@ -71,7 +60,7 @@ class Trainer {
     OpenEpisode open = joined.open;
     for (std::uint64_t round = joined.next_round; round < schedule_.rounds(); ++round) {
       if (!rollout_ || rollout_->phase() != schedule_.phase_of(round)) {
-        rollout_.emplace(config_, actor_, world_, round, open);
+        rollout_.emplace(config_, actor_, world_, time_, round, open);
         open = {};
       }
       if (!drive_round(round)) return;
@@ -97,24 +86,25 @@ class Trainer {
   // False when the process is asked to stop.
   bool drive_round(std::uint64_t round) {
     if (!fetch_weights(schedule_.weights_version(round))) return false;
-    const auto start = Clock::now();
     if (schedule_.selects_in(round)) {
       learner_.send(encode(LearnerRequest(rollout_->select(weights_))));
       // Noted before the round's chunk goes out: where the chunk is known, so is the outcome.
       const auto body = answer(learner_);
       if (!body) return false;
       expect<Noted>(decode_learner_reply(*body), "learner");
+      time_.charge(TimePart::kWaitForLearner);
     }
     ask_for_weights_of(round + 1);
+    time_.charge(TimePart::kTransport);
     const Insert chunk = rollout_->drive_round(weights_);
-    times_.drive_s += seconds_since(start);
     delay(round);
 
     // One chunk may be under way while the next is driven, not two.
-    const auto wait_start = Clock::now();
+    const Bytes bytes = encode(ReplayRequest(chunk));
+    time_.charge(TimePart::kTransport);
     if (!drain(replay_)) return false;
-    times_.wait_for_replay_s += seconds_since(wait_start);
-    replay_.send(encode(ReplayRequest(chunk)));
+    time_.charge(TimePart::kWaitForReplay);
+    replay_.send(bytes);
     report(round);
     return true;
   }
@@ -129,19 +119,19 @@ class Trainer {
   }
 
   bool fetch_weights(std::uint64_t version) {
-    const auto start = Clock::now();
     if (asked_ != version) {
       learner_.send(encode(LearnerRequest(WeightsWanted{version})));
       asked_ = version;
     }
+    time_.charge(TimePart::kTransport);
     if (have_ != version) {
       const auto body = answer(learner_);
       if (!body) return false;
+      time_.charge(TimePart::kWaitForLearner);
       weights_ = expect<Weights>(decode_learner_reply(*body), "learner");
       check_weights();
       have_ = version;
     }
-    times_.wait_for_weights_s += seconds_since(start);
     return true;
   }
 
@@ -178,17 +168,13 @@ class Trainer {
                       schedule_.phase_of(round + 1) != schedule_.phase_of(round);
     if (static_cast<std::int64_t>(round + 1) % lines_apart != 0 && !last) return;
     const RolloutTotals totals = rollout_->take_totals();
-    const double passed_s = seconds_since(std::exchange(line_start_, Clock::now()));
-    const Times times = std::exchange(times_, {});
     const auto steps = static_cast<double>(std::max<std::int64_t>(totals.steps, 1));
     std::vector<std::pair<std::string, double>> values = {
-        {"charts/SPS", steps / passed_s},
+        {"charts/SPS", steps / time_.wall_s()},
         {"charts/reward_per_1000", 1000.0 * totals.reward / steps},
         {"charts/collisions_per_1000", 1000.0 * static_cast<double>(totals.collisions) / steps},
-        {"charts/epsilon", totals.epsilon},
-        {"time/drive", times.drive_s / passed_s},
-        {"time/wait_for_weights", times.wait_for_weights_s / passed_s},
-        {"time/wait_for_replay", times.wait_for_replay_s / passed_s}};
+        {"charts/epsilon", totals.epsilon}};
+    for (auto& value : time_.take()) values.push_back(std::move(value));
     if (totals.episodes > 0) {
       const auto episodes = static_cast<double>(totals.episodes);
       values.emplace_back("charts/episodic_return", totals.episodic_return / episodes);
@@ -203,6 +189,7 @@ class Trainer {
   const RunConfig& config_;
   int actor_;
   world::World& world_;
+  TimeAccount& time_;
   Schedule schedule_;
   MetricsWriter metrics_;
   Client replay_;
@@ -212,14 +199,13 @@ class Trainer {
   Weights weights_;
   std::optional<std::uint64_t> have_;   // version of weights_
   std::optional<std::uint64_t> asked_;  // the latest version asked for
-  Times times_;
-  Clock::time_point line_start_ = Clock::now();
 };
 
 }  // namespace
 
-void train(const RunConfig& config, const RunDirectory& directory, int actor, world::World& world) {
-  Trainer(config, directory, actor, world).run();
+void train(const RunConfig& config, const RunDirectory& directory, int actor, world::World& world,
+           TimeAccount& time) {
+  Trainer(config, directory, actor, world, time).run();
 }
 
 }  // namespace corridor::actor

@@ -4,12 +4,14 @@
 #include "actor/world/world.h"
 #include "proto/run_directory.h"
 #include "proto/settings.h"
+#include "proto/time_account.h"
 
 namespace corridor::actor {
 
 // Drives every round that the replay server does not have yet, in lockstep with the learner, and
 // returns after the last one, or when the process is asked to stop. Throws Failure when a peer is
 // lost or refuses.
-void train(const RunConfig& config, const RunDirectory& directory, int actor, world::World& world);
+void train(const RunConfig& config, const RunDirectory& directory, int actor, world::World& world,
+           TimeAccount& time);
 
 }  // namespace corridor::actor

@@ -14,6 +14,9 @@
 
 namespace corridor::cluster {
 
+// Cores that this process may use.
+int available_cores();
+
 using Milliseconds = std::chrono::milliseconds;
 
 struct Limits {

@@ -23,6 +23,9 @@ constexpr std::size_t kRecentLines = 20;
 constexpr double kPlainInterval_s = 10.0;
 // From this share of its time on, waiting is worth naming.
 constexpr double kWaitsMuch = 0.1;
+// From this share on, more processes would only wait for the cores.
+constexpr double kCoresBusy = 0.9;
+constexpr int kPartsNamed = 3;
 
 std::string percent(double share) { return fmt::format("{:.0f} %", 100.0 * share); }
 
@@ -122,11 +125,13 @@ std::optional<double> TrainingProgress::Recent::mean() const {
   return sum / static_cast<double>(values.size());
 }
 
-TrainingProgress::TrainingProgress(const Schedule& schedule, std::uint64_t rounds_done,
+TrainingProgress::TrainingProgress(const RunConfig& config, std::uint64_t rounds_done, int cores,
                                    double now_s)
-    : schedule_(schedule),
-      phase_(phase_name(schedule.phase_of(std::min(rounds_done, schedule.rounds() - 1)))),
-      steps_done_(static_cast<std::int64_t>(rounds_done) * schedule.steps_per_round()) {
+    : schedule_(config),
+      actors_(config.run.actors),
+      cores_(cores),
+      phase_(phase_name(schedule_.phase_of(std::min(rounds_done, schedule_.rounds() - 1)))),
+      steps_done_(static_cast<std::int64_t>(rounds_done) * schedule_.steps_per_round()) {
   history_.emplace_back(now_s, steps_done_);
 }
 
@@ -201,21 +206,51 @@ std::string TrainingProgress::details() const {
   return text.empty() ? "starting" : text;
 }
 
-// Who waits for whom, and so who is the bottleneck.
+CoreTime TrainingProgress::cores_of(const std::string& process) const {
+  MetricsValues means;
+  for (const auto& [name, recent] : recent_) {
+    if (!name.starts_with(process + " time/")) continue;
+    if (const auto value = recent.mean()) means[name.substr(process.size() + 1)] = *value;
+  }
+  CoreTime parts = cores_by_part(means);
+  if (process == "actor") {
+    for (auto& [part, cores] : parts) cores *= actors_;
+  }
+  return parts;
+}
+
+// Who waits for whom, what the cores do, and so what is the bottleneck.
 std::string TrainingProgress::waiting() const {
   const auto for_actors = mean("learner", "time/wait_for_actors");
-  const auto for_weights = mean("actor", "time/wait_for_weights");
+  const auto for_weights = mean("actor", "time/wait_for_learner");
   if (!for_actors || !for_weights) return "";
   const double learner_for_replay = mean("learner", "time/wait_for_replay").value_or(0.0);
   const double actors_for_replay = mean("actor", "time/wait_for_replay").value_or(0.0);
   const double for_replay = std::max(learner_for_replay, actors_for_replay);
 
+  const CoreTime of_actors = cores_of("actor");
+  const CoreTime of_learner = cores_of("learner");
+  const CoreTime of_replay = cores_of("replay");
+  CoreTime of_all;
+  for (const CoreTime* parts : {&of_actors, &of_learner, &of_replay}) {
+    for (const auto& [part, cores] : *parts) of_all[part] += cores;
+  }
+  const double busy = sum(of_all) / cores_;
+
   const double most = std::max({*for_actors, *for_weights, for_replay});
-  const char* bottleneck = "none";
-  if (most >= kWaitsMuch) {
+  std::string bottleneck = "none";
+  const CoreTime* parts = nullptr;
+  if (busy >= kCoresBusy) {
+    bottleneck = fmt::format("the {} cores", cores_);
+    parts = &of_all;
+  } else if (most >= kWaitsMuch) {
     bottleneck = most == for_replay     ? "the replay server"
                  : most == *for_weights ? "the learner"
                                         : "the actors";
+    parts = most == for_replay ? &of_replay : most == *for_weights ? &of_learner : &of_actors;
+  }
+  if (parts != nullptr && !parts->empty()) {
+    bottleneck += ": " + largest_parts(*parts, kPartsNamed);
   }
   std::string text = fmt::format("waits: learner {} for actors, actors {} for weights",
                                  percent(*for_actors), percent(*for_weights));

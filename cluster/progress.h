@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "cluster/core_time.h"
 #include "proto/schedule.h"
 
 namespace corridor::cluster {
@@ -21,7 +22,7 @@ struct MetricsLine {
   std::string phase;
   std::uint64_t round = 0;
   std::int64_t step = 0;
-  std::map<std::string, double, std::less<>> values;  // all other numbers by name
+  MetricsValues values;  // all other numbers by name
 };
 
 // Nothing when the text is no such line.
@@ -52,8 +53,8 @@ class LineTail {
 // The state of a training as its metrics tell it. Pure: time comes from the caller.
 class TrainingProgress {
  public:
-  // `rounds_done` before this start (resume).
-  TrainingProgress(const Schedule& schedule, std::uint64_t rounds_done, double now_s);
+  // `rounds_done` before this start (resume); `cores` that all processes share.
+  TrainingProgress(const RunConfig& config, std::uint64_t rounds_done, int cores, double now_s);
 
   void on_learner(const MetricsLine& line, double now_s);
   void on_actor(const MetricsLine& line);
@@ -68,8 +69,9 @@ class TrainingProgress {
   std::string headline() const;
   // "reward 612, collisions 2.1 per 1000 steps; 32.0 samples per insert"
   std::string details() const;
-  // "waits: learner 40 % for actors, actors 3 % for weights; bottleneck: the actors"; empty while
-  // unknown.
+  // "waits: learner 40 % for actors, actors 3 % for weights; bottleneck: the actors: simulate 81 %,
+  // world 9 %". The bottleneck is the cores when they are busy, else the side that others wait for;
+  // the parts are where its time goes. Empty while unknown.
   std::string waiting() const;
   // All of them that say something.
   std::vector<std::string> lines() const;
@@ -84,8 +86,12 @@ class TrainingProgress {
   void enter(const std::string& phase);
   void note(const char* process, const MetricsLine& line);
   std::optional<double> mean(const std::string& process, const char* name) const;
+  // Of the processes of this name together.
+  CoreTime cores_of(const std::string& process) const;
 
   Schedule schedule_;
+  int actors_;
+  int cores_;
   std::string phase_;
   std::int64_t steps_done_ = 0;
   std::deque<std::pair<double, std::int64_t>> history_;  // (time, steps done)

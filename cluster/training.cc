@@ -43,7 +43,7 @@ class NewRun {
 class Monitor {
  public:
   Monitor(const RunConfig& config, const RunDirectory& directory, std::uint64_t rounds_done)
-      : progress_(Schedule(config), rounds_done, monotonic_s()),
+      : progress_(config, rounds_done, available_cores(), monotonic_s()),
         learner_(directory.metrics(kLearner)),
         replay_(directory.metrics(kReplay)) {
     for (int i = 0; i < config.run.actors; ++i) {

@@ -16,6 +16,7 @@
 #include "proto/program.h"
 #include "proto/run_config.h"
 #include "proto/run_directory.h"
+#include "proto/time_account.h"
 
 namespace {
 
@@ -58,8 +59,9 @@ int run(const std::string& root) {
   Server server(where.learner, run_id);
   learner::Publisher publisher(server, static_cast<std::size_t>(config.run.actors));
   Client client(where.replay, "replay server", identity, limits);
-  learner::ReplayClient replay(client, [&] { publisher.service(Duration::zero()); });
-  learner::Training training(config, {directory, replay, publisher, metrics, stop_requested},
+  TimeAccount time;
+  learner::ReplayClient replay(client, time, [&] { publisher.service(Duration::zero()); });
+  learner::Training training(config, {directory, replay, publisher, metrics, time, stop_requested},
                              std::move(state));
   training.run();
   return 0;

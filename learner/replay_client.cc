@@ -1,7 +1,6 @@
 #include "learner/replay_client.h"
 
 #include <algorithm>
-#include <chrono>
 #include <utility>
 
 #include "proto/codec.h"
@@ -41,17 +40,26 @@ void every_nth(const Batch& drawn, std::size_t first, std::size_t n, Batch& batc
 
 }  // namespace
 
-ReplayClient::ReplayClient(Client& client, std::function<void()> on_wait)
-    : client_(client), on_wait_(std::move(on_wait)) {}
+ReplayClient::ReplayClient(Client& client, TimeAccount& time, std::function<void()> on_wait)
+    : client_(client), time_(time), on_wait_(std::move(on_wait)) {}
 
 void ReplayClient::send(const ReplayRequest& request) { client_.send(encode(request)); }
 
+std::optional<Bytes> ReplayClient::glance(TimePart waiting) {
+  std::optional<Bytes> body = client_.receive(kGlance);
+  time_.charge(waiting);
+  if (body) return body;
+  on_wait_();
+  time_.charge(TimePart::kPublish);
+  return std::nullopt;
+}
+
 template <typename Reply>
 Reply ReplayClient::receive() {
+  time_.charge(TimePart::kTransport);
   while (true) {
     // The client itself gives up on a server that is lost.
-    if (const std::optional<Bytes> body = client_.receive(kGlance)) return expect<Reply>(*body);
-    on_wait_();
+    if (const auto body = glance(TimePart::kWaitForReplay)) return expect<Reply>(*body);
   }
 }
 
@@ -68,17 +76,15 @@ void ReplayClient::join(std::uint64_t next_round) {
 std::optional<Opened> ReplayClient::open_block(std::uint64_t round,
                                                const std::function<bool()>& give_up) {
   send(OpenBlock{round});
+  time_.charge(TimePart::kTransport);
   while (!give_up()) {
-    if (const std::optional<Bytes> body = client_.receive(kGlance)) return expect<Opened>(*body);
-    on_wait_();
+    if (const auto body = glance(TimePart::kWaitForActors)) return expect<Opened>(*body);
   }
   return std::nullopt;
 }
 
 Batch ReplayClient::receive_batch(std::size_t rows) {
-  const auto start = std::chrono::steady_clock::now();
   Batch batch = receive<Batch>();
-  waited_s_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (batch.keys.size() != rows || batch.weights.size() != rows) {
     throw Failure("the replay server sent {} keys and {} weights, {} rows were asked for",
                   batch.keys.size(), batch.weights.size(), rows);

@@ -10,6 +10,7 @@
 
 #include "proto/endpoint.h"
 #include "proto/messages.h"
+#include "proto/time_account.h"
 
 namespace corridor::learner {
 
@@ -30,8 +31,9 @@ struct Block {
 // Every function throws Failure when the server is lost, refuses, or answers something else.
 class ReplayClient {
  public:
-  // `on_wait` is called about every millisecond while an answer is awaited.
-  ReplayClient(Client& client, std::function<void()> on_wait);
+  // `on_wait` is called about every millisecond while an answer is awaited. Waiting and transport
+  // are charged to `time`.
+  ReplayClient(Client& client, TimeAccount& time, std::function<void()> on_wait);
 
   // The first message. Throws Failure unless the server goes on with block `next_round`.
   void join(std::uint64_t next_round);
@@ -48,18 +50,17 @@ class ReplayClient {
   // Between blocks.
   void save(const std::filesystem::path& directory);
 
-  // Seconds spent waiting for batches, so far.
-  double waited_s() const { return waited_s_; }
-
  private:
   void send(const ReplayRequest& request);
+  // One look at the socket.
+  std::optional<Bytes> glance(TimePart waiting);
   template <typename Reply>
   Reply receive();
   Batch receive_batch(std::size_t rows);
 
   Client& client_;
+  TimeAccount& time_;
   std::function<void()> on_wait_;
-  double waited_s_ = 0.0;
   Batch batch_;  // scratch of run_block
 };
 

@@ -64,8 +64,7 @@ Training::Training(const RunConfig& config, Surroundings surroundings, LearnerSt
       around_(std::move(surroundings)),
       state_(std::move(state)),
       phase_(phase_in_progress(schedule_, state_.next_round)),
-      checkpointed_(state_.next_round),
-      reported_(Clock::now()) {
+      checkpointed_(state_.next_round) {
   begin_phase(std::move(state_.td));
 }
 
@@ -121,8 +120,8 @@ bool Training::await_selection(std::uint64_t round) {
           round, list(around_.publisher.awaited(round)), kHangs.count());
     }
     around_.publisher.service(kGlance);
+    around_.time.charge(TimePart::kWaitForActors);
   }
-  times_.wait_for_actors_s += seconds_since(start);
   consider(*selected_);
   return true;
 }
@@ -158,9 +157,7 @@ std::optional<Opened> Training::await_block(std::uint64_t round) {
     if (!stopping) stopping = Clock::now();
     return Clock::now() - *stopping > around_.stop_patience;
   };
-  std::optional<Opened> opened = around_.replay.open_block(round, give_up);
-  times_.wait_for_actors_s += seconds_since(start);
-  return opened;
+  return around_.replay.open_block(round, give_up);
 }
 
 Training::BlockResult Training::train_block(std::uint64_t round, const Opened& opened) {
@@ -168,24 +165,22 @@ Training::BlockResult Training::train_block(std::uint64_t round, const Opened& o
   const double learning_rate = between(dqn().learning_rate, dqn().learning_rate_end, progress);
   const Block block{opened.batches, static_cast<std::uint32_t>(dqn().batch_size),
                     between(dqn().importance_exponent, dqn().importance_exponent_end, progress)};
-  const double waited_before_s = around_.replay.waited_s();
   BlockResult result;
   around_.replay.run_block(block, [&](const Batch& batch) {
-    const Clock::time_point start = Clock::now();
+    around_.time.charge(TimePart::kTransport);
     TdUpdate::Result update = td_->update(batch, learning_rate);
-    times_.update_s += seconds_since(start);
+    around_.time.charge(TimePart::kUpdate);
     result.loss += update.loss / opened.batches;
     result.q_value += update.q_value / opened.batches;
     around_.publisher.service(Duration::zero());
+    around_.time.charge(TimePart::kPublish);
     return std::move(update.priorities);
   });
   result.updates = td_->updates();
-  times_.wait_for_replay_s += around_.replay.waited_s() - waited_before_s;
   return result;
 }
 
 void Training::finish_block(std::uint64_t round, std::uint32_t updates) {
-  const Clock::time_point start = Clock::now();
   const bool last_of_phase =
       round + 1 == schedule_.first_round(phase_) + schedule_.rounds_of(phase_);
   Weights next = state_.published.back();
@@ -208,7 +203,7 @@ void Training::finish_block(std::uint64_t round, std::uint32_t updates) {
     begin_phase(initial_td_state(next.bp));
   }
   around_.publisher.publish(std::move(next));
-  times_.publish_and_checkpoint_s += seconds_since(start);
+  around_.time.charge(TimePart::kPublish);
 }
 
 void Training::checkpoint() {
@@ -222,7 +217,7 @@ void Training::checkpoint() {
   write_tensors(directory / kLearnerFile, to_tensors(state, config_));
   around_.directory.commit_checkpoint(round, config_.schedule.checkpoints_kept);
   checkpointed_ = state_.next_round;
-  times_.publish_and_checkpoint_s += seconds_since(start);
+  around_.time.charge(TimePart::kCheckpoint);
   spdlog::info("checkpoint after block {} in {:.2f} s", round, seconds_since(start));
 }
 
@@ -238,16 +233,12 @@ void Training::report(std::uint64_t round, const Opened& opened, const BlockResu
   const auto rounds_done = static_cast<std::int64_t>(round - schedule_.first_round(phase) + 1);
   if (!selected_ && !phase_ends && rounds_done % every != 0) return;
 
-  const double passed_s = std::max(seconds_since(reported_), 1e-9);
   std::vector<std::pair<std::string, double>> values = {
-      {"charts/SPS", static_cast<double>(steps_since_report_) / passed_s},
+      {"charts/SPS", static_cast<double>(steps_since_report_) / around_.time.wall_s()},
       {"charts/updates", static_cast<double>(result.updates)},
       {"charts/learning_rate", between(settings.learning_rate, settings.learning_rate_end,
-                                       schedule_.phase_progress(round))},
-      {"time/wait_for_actors", times_.wait_for_actors_s / passed_s},
-      {"time/wait_for_replay", times_.wait_for_replay_s / passed_s},
-      {"time/update", times_.update_s / passed_s},
-      {"time/publish_and_checkpoint", times_.publish_and_checkpoint_s / passed_s}};
+                                       schedule_.phase_progress(round))}};
+  for (auto& value : around_.time.take()) values.push_back(std::move(value));
   if (opened.batches > 0) {
     values.emplace_back("losses/td_loss", result.loss);
     values.emplace_back("losses/q_values", result.q_value);
@@ -260,9 +251,7 @@ void Training::report(std::uint64_t round, const Opened& opened, const BlockResu
     values.emplace_back("eval/score", score_);
   }
   around_.metrics.write(phase_name(phase), round, steps, values);
-  times_ = {};
   steps_since_report_ = 0;
-  reported_ = Clock::now();
 }
 
 // Tests slow every process at random, by other amounts in each run: the result must not change.

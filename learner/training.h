@@ -17,6 +17,7 @@
 #include "proto/run_directory.h"
 #include "proto/schedule.h"
 #include "proto/settings.h"
+#include "proto/time_account.h"
 
 namespace corridor::learner {
 
@@ -26,6 +27,7 @@ struct Surroundings {
   ReplayClient& replay;  // joined by `run`
   Publisher& publisher;  // fresh
   MetricsWriter& metrics;
+  TimeAccount& time;
   std::function<bool()> stop_requested;
   Duration stop_patience{1500};  // asked to stop: how long to wait for a block's last chunks
 };
@@ -56,13 +58,6 @@ class Training {
     double q_value = 0.0;
     std::uint64_t updates = 0;  // in the phase so far
   };
-  // Seconds since the last line of metrics.
-  struct Times {
-    double wait_for_actors_s = 0.0;
-    double wait_for_replay_s = 0.0;
-    double update_s = 0.0;
-    double publish_and_checkpoint_s = 0.0;
-  };
 
   // Each returns false or nothing when it is to stop before it is done.
   bool train_round(std::uint64_t round);
@@ -90,9 +85,7 @@ class Training {
 
   std::optional<SelectionOutcome> selected_;  // in this round
   double score_ = 0.0;                        // of `selected_`
-  Times times_;
   std::int64_t steps_since_report_ = 0;
-  std::chrono::steady_clock::time_point reported_;
 };
 
 }  // namespace corridor::learner

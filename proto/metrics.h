@@ -17,7 +17,7 @@ class MetricsWriter {
 
   // {"phase":"MoP","round":7,"step":3584,"time_s":1.25,<name>:<value>,...}. `step` counts the
   // phase's environment steps of all actors; time_s is seconds since the writer was made and the
-  // only thing in the line that differs between two equal runs (together with *_s and */SPS).
+  // only thing in the line that differs between two equal runs (together with time/*, */SPS).
   // Flushed at once. Throws Failure when the disk is full.
   void write(const char* phase, std::uint64_t round, std::int64_t step,
              const std::vector<std::pair<std::string, double>>& values);

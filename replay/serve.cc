@@ -11,15 +11,15 @@
 #include "proto/codec.h"
 #include "proto/random.h"
 #include "proto/schedule.h"
+#include "proto/time_account.h"
 
 namespace corridor::replay {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-using Seconds = std::chrono::duration<double>;
 
 constexpr Duration kPatience{100};
-constexpr Seconds kSilence{5.0};  // before it is worth a line in the log
+constexpr std::chrono::seconds kSilence{5};  // before it is worth a line in the log
 constexpr std::uint64_t kBlocksPerMetrics = 32;
 
 class Loop {
@@ -30,15 +30,14 @@ class Loop {
         metrics_(metrics),
         schedule_(config),
         seed_(config.run.seed),
-        delay_max_(config.run.delay_ms_max / 1000.0) {}
+        delay_ms_max_(config.run.delay_ms_max) {}
 
   void turn() {
-    Seconds& waiting = service_.awaited().empty() ? for_learner_ : for_actors_;
+    const bool chunks_missing = !service_.awaited().empty();
     const std::optional<IncomingRequest> request = server_.receive(kPatience);
-    waiting += lap();
+    time_.charge(chunks_missing ? TimePart::kWaitForActors : TimePart::kWaitForLearner);
     if (request) carry_out(*request);
     if (opening_) open_or_tell();
-    busy_ += lap();
   }
 
  private:
@@ -47,7 +46,10 @@ class Loop {
       ReplayRequest decoded = decode_replay_request(request.body);
       const bool of_block = std::holds_alternative<OpenBlock>(decoded);
       if (of_block || std::holds_alternative<Insert>(decoded)) delay();
+      const TimePart work = part_of(decoded);
+      time_.charge(TimePart::kTransport);
       const Outcome outcome = service_.handle(request.client, std::move(decoded));
+      time_.charge(work);
       if (const auto* reply = std::get_if<ReplayReply>(&outcome)) {
         server_.reply(request, encode(*reply));
       } else if (const auto* refusal = std::get_if<Refused>(&outcome)) {
@@ -64,10 +66,20 @@ class Loop {
       spdlog::warn("malformed request: {}", malformed.what());
       server_.reject_malformed(request, malformed.what());
     }
+    time_.charge(TimePart::kTransport);
+  }
+
+  static TimePart part_of(const ReplayRequest& request) {
+    if (std::holds_alternative<Insert>(request)) return TimePart::kInsert;
+    if (std::holds_alternative<Step>(request)) return TimePart::kSample;
+    if (std::holds_alternative<Save>(request)) return TimePart::kCheckpoint;
+    return TimePart::kTransport;
   }
 
   void open_or_tell() {
-    if (const std::optional<Opened> opened = service_.try_open()) {
+    const std::optional<Opened> opened = service_.try_open();
+    time_.charge(TimePart::kInsert);
+    if (opened) {
       server_.reply(*opening_, encode(*opened));
       opening_.reset();
     } else if (Clock::now() - opening_since_ > kSilence) {
@@ -83,24 +95,17 @@ class Loop {
     const std::uint64_t blocks = service_.next_round();
     if (blocks == 0 || blocks % kBlocksPerMetrics != 0) return;
     auto values = service_.metrics();
-    values.emplace_back("replay/wait_for_actors_s", for_actors_.count());
-    values.emplace_back("replay/wait_for_learner_s", for_learner_.count());
-    values.emplace_back("replay/busy_s", busy_.count());
+    for (auto& value : time_.take()) values.push_back(std::move(value));
     const std::uint64_t round = blocks - 1;
     metrics_.write(phase_name(schedule_.phase_of(round)), round,
                    schedule_.phase_steps_before(round) + schedule_.steps_per_round(), values);
-    for_actors_ = for_learner_ = busy_ = Seconds{0.0};
   }
 
   // A test aid (run.delay_ms_max): results must not depend on how fast anything is.
   void delay() {
-    if (delay_max_ <= Seconds{0.0}) return;
-    std::this_thread::sleep_for(delay_max_ * random_unit(seed_, Purpose::kWireDelay, {delays_++}));
-  }
-
-  Seconds lap() {
-    const Clock::time_point before = std::exchange(mark_, Clock::now());
-    return mark_ - before;
+    if (delay_ms_max_ <= 0.0) return;
+    const double share = random_unit(seed_, Purpose::kWireDelay, {delays_++});
+    std::this_thread::sleep_for(std::chrono::duration<double, std::milli>(share * delay_ms_max_));
   }
 
   Server& server_;
@@ -108,14 +113,11 @@ class Loop {
   MetricsWriter& metrics_;
   const Schedule schedule_;
   const std::uint64_t seed_;
-  const Seconds delay_max_;
+  const double delay_ms_max_;
 
   std::optional<IncomingRequest> opening_;  // the OpenBlock that waits
   Clock::time_point opening_since_;         // or since it was last told
-  Clock::time_point mark_ = Clock::now();
-  Seconds for_actors_{0.0};
-  Seconds for_learner_{0.0};
-  Seconds busy_{0.0};
+  TimeAccount time_;
   std::uint64_t delays_ = 0;
 };
 

@@ -11,10 +11,10 @@
 namespace corridor::replay {
 
 // Serves until `stop` says so, which is asked at least ten times a second. Logs whom it waits for
-// when a block stays unopened for long. Every 32 blocks it writes the service's metrics, and how
-// long it has waited for actors (a block is wanted, chunks are missing), for the learner (anything
-// else), and was busy. Requests that make no sense are refused. Throws Failure when the metrics
-// cannot be written.
+// when a block stays unopened for long. Every 32 blocks it writes the service's metrics, and
+// where its time went (proto/time_account.h): it waits for actors where a block is wanted and
+// chunks are missing, else for the learner. Requests that make no sense are refused. Throws Failure
+// when the metrics cannot be written.
 void serve(Server& server, ReplayService& service, MetricsWriter& metrics, const RunConfig& config,
            const std::function<bool()>& stop);
 

@@ -52,8 +52,11 @@ auto in_sumo(const std::string& doing, Function&& function) {
 }  // namespace
 
 SumoWorld::SumoWorld(const WorldSettings& settings, std::filesystem::path network,
-                     std::filesystem::path vehicle_types)
-    : settings_(settings), network_(std::move(network)), vehicle_types_(std::move(vehicle_types)) {
+                     std::filesystem::path vehicle_types, TimeAccount& time)
+    : settings_(settings),
+      network_(std::move(network)),
+      vehicle_types_(std::move(vehicle_types)),
+      time_(time) {
   require_file(network_);
   require_file(vehicle_types_);
   CORRIDOR_CHECK(!world_exists.exchange(true), "libsumo holds one simulation a process");
@@ -65,6 +68,7 @@ SumoWorld::~SumoWorld() {
 }
 
 driving::Scene SumoWorld::begin(const EpisodeStart& start) {
+  time_.charge(TimePart::kPlan);
   end();
   in_sumo(fmt::format("loading {} and {}", network_.string(), vehicle_types_.string()),
           [&] { Sumo::load(options(start)); });
@@ -77,12 +81,14 @@ driving::Scene SumoWorld::begin(const EpisodeStart& start) {
     scene_ = Scene{traffic_->start(), {}};
     add_ego(scene_.ego, start.driver);
     for (const Entrance& entrance : traffic_->populate(scene_.ego)) add(entrance);
+    time_.charge(TimePart::kLoad);
     return scene_;
   });
 }
 
 StepResult SumoWorld::step(const driving::Trajectory& trajectory) {
   CORRIDOR_CHECK(running_ && driver_ == EgoDriver::kPlanner);
+  time_.charge(TimePart::kPlan);
   return in_sumo("placing the ego and stepping", [&] {
     const driving::TrajectoryPoint point = trajectory.at(settings_.simulation.step_s);
     // The whole body stays on the road: SUMO loses a vehicle whose middle is off it.
@@ -94,19 +100,20 @@ StepResult SumoWorld::step(const driving::Trajectory& trajectory) {
     SumoVehicle::setSpeed(kEgo, point.speed_mps);
     // SUMO moves the others first, past the ego where it was, and then places the ego: after the
     // step all are at the same instant.
-    Sumo::step();
+    simulate();
     const double acceleration_mps2 =
         (point.speed_mps - scene_.ego.speed_mps) / settings_.simulation.step_s;
-    return finish_step({point.s_m, d_m, point.speed_mps, acceleration_mps2,
-                        point.lateral_speed_mps, trajectory.target().set_point_mps});
+    return finish_step({point.s_m, d_m, point.speed_mps, acceleration_mps2, point.lateral_speed_mps,
+                        trajectory.target().set_point_mps});
   });
 }
 
 StepResult SumoWorld::step_by_world() {
   CORRIDOR_CHECK(running_ && driver_ == EgoDriver::kWorld);
+  time_.charge(TimePart::kPlan);
   return in_sumo("stepping", [&] {
     const Ego before = scene_.ego;
-    Sumo::step();
+    simulate();
     const libsumo::TraCIPosition position = SumoVehicle::getPosition(kEgo);
     const double speed_mps = SumoVehicle::getSpeed(kEgo);
     const double d_m = position.y - right_edge_y_m_;
@@ -114,6 +121,12 @@ StepResult SumoWorld::step_by_world() {
     return finish_step({position.x, d_m, speed_mps, (speed_mps - before.speed_mps) / step_s,
                         (d_m - before.d_m) / step_s, 0.0});
   });
+}
+
+void SumoWorld::simulate() {
+  time_.charge(TimePart::kWorld);
+  Sumo::step();
+  time_.charge(TimePart::kSimulate);
 }
 
 void SumoWorld::end() {
@@ -129,6 +142,7 @@ StepResult SumoWorld::finish_step(const driving::Ego& ego_after) {
   result.collision = driving::find_collision(before, scene_, settings_.ego);
   apply(traffic_->decide(scene_));
   result.scene = scene_;
+  time_.charge(TimePart::kWorld);
   return result;
 }
 

@@ -14,6 +14,7 @@
 #include "actor/world/traffic.h"
 #include "actor/world/world.h"
 #include "proto/settings.h"
+#include "proto/time_account.h"
 
 namespace corridor::world {
 
@@ -33,9 +34,10 @@ class SumoWorld : public World {
  public:
   // `network` and `vehicle_types` as scenarios/sumo_files.h makes them (road.net.xml,
   // traffic.rou.xml). At most one SumoWorld exists in a process (CHECK): libsumo has one
-  // simulation. Throws Failure when the road is too short for an episode or a file is missing.
+  // simulation. `time` outlives the world. Throws Failure when the road is too short for an episode
+  // or a file is missing.
   SumoWorld(const WorldSettings& settings, std::filesystem::path network,
-            std::filesystem::path vehicle_types);
+            std::filesystem::path vehicle_types, TimeAccount& time);
   ~SumoWorld() override;
   SumoWorld(const SumoWorld&) = delete;
   SumoWorld& operator=(const SumoWorld&) = delete;
@@ -52,11 +54,13 @@ class SumoWorld : public World {
   void add(const Entrance& entrance);
   void apply(const TrafficChange& change);
   void read_others();
+  void simulate();
   StepResult finish_step(const driving::Ego& ego_after);
 
   WorldSettings settings_;
   std::filesystem::path network_;
   std::filesystem::path vehicle_types_;
+  TimeAccount& time_;
 
   // Of the episode in progress.
   bool running_ = false;

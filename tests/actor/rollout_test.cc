@@ -40,6 +40,8 @@ Weights weights_of(const RunConfig& config, std::uint64_t version) {
           parameters(config.network(Phase::kBp), version + 1000)};
 }
 
+TimeAccount account;
+
 class InEachPhase : public testing::TestWithParam<Phase> {
  protected:
   RunConfig config = small_config();
@@ -48,8 +50,8 @@ class InEachPhase : public testing::TestWithParam<Phase> {
 
 TEST_P(InEachPhase, GivesTheSameChunksForTheSameRounds) {
   FakeWorld world_a(config), world_b(config);
-  PhaseRollout a(config, 1, world_a, first, {});
-  PhaseRollout b(config, 1, world_b, first, {});
+  PhaseRollout a(config, 1, world_a, account, first, {});
+  PhaseRollout b(config, 1, world_b, account, first, {});
   for (std::uint64_t round = first; round < first + 6; ++round) {
     EXPECT_EQ(a.drive_round(weights_of(config, round)), b.drive_round(weights_of(config, round)));
   }
@@ -57,14 +59,14 @@ TEST_P(InEachPhase, GivesTheSameChunksForTheSameRounds) {
 
 TEST_P(InEachPhase, ActorsDriveDifferentEpisodes) {
   FakeWorld world_a(config), world_b(config);
-  PhaseRollout a(config, 0, world_a, first, {});
-  PhaseRollout b(config, 1, world_b, first, {});
+  PhaseRollout a(config, 0, world_a, account, first, {});
+  PhaseRollout b(config, 1, world_b, account, first, {});
   EXPECT_NE(a.drive_round(weights_of(config, 0)).rows, b.drive_round(weights_of(config, 0)).rows);
 }
 
 TEST_P(InEachPhase, GoesOnBitForBitFromTheOpenEpisodeOfAnyRound) {
   FakeWorld world(config);
-  PhaseRollout uninterrupted(config, 1, world, first, {});
+  PhaseRollout uninterrupted(config, 1, world, account, first, {});
   std::vector<Insert> chunks;
   for (std::uint64_t round = first; round < first + 8; ++round) {
     chunks.push_back(uninterrupted.drive_round(weights_of(config, round)));
@@ -74,7 +76,7 @@ TEST_P(InEachPhase, GoesOnBitForBitFromTheOpenEpisodeOfAnyRound) {
     FakeWorld fresh_world(config);
     const OpenEpisode& open = chunks[done - 1].open;
     resumed_inside_an_episode += !open.actions.empty();
-    PhaseRollout resumed(config, 1, fresh_world, first + done, open);
+    PhaseRollout resumed(config, 1, fresh_world, account, first + done, open);
     EXPECT_EQ(resumed.drive_round(weights_of(config, first + done)), chunks[done]) << done;
   }
   EXPECT_GE(resumed_inside_an_episode, 4);
@@ -82,7 +84,7 @@ TEST_P(InEachPhase, GoesOnBitForBitFromTheOpenEpisodeOfAnyRound) {
 
 TEST_P(InEachPhase, SelectionIsGreedySharedOutAndCutsTheOpenEpisodeOff) {
   FakeWorld world(config);
-  PhaseRollout rollout(config, 0, world, first, {});
+  PhaseRollout rollout(config, 0, world, account, first, {});
   Insert before;
   do {
     before = rollout.drive_round(weights_of(config, 0));
@@ -96,14 +98,14 @@ TEST_P(InEachPhase, SelectionIsGreedySharedOutAndCutsTheOpenEpisodeOff) {
   EXPECT_GT(after.open.episode, before.open.episode);
 
   FakeWorld fresh_world(config);
-  PhaseRollout resumed(config, 0, fresh_world, before.round + 1, before.open);
+  PhaseRollout resumed(config, 0, fresh_world, account, before.round + 1, before.open);
   resumed.select(weights_of(config, 1));
   EXPECT_EQ(resumed.drive_round(weights_of(config, 1)), after);
 }
 
 TEST_P(InEachPhase, EveryRowIsFiniteWithAPriorityOfItsOwn) {
   FakeWorld world(config);
-  PhaseRollout rollout(config, 0, world, first, {});
+  PhaseRollout rollout(config, 0, world, account, first, {});
   const Insert chunk = rollout.drive_round(weights_of(config, 0));
   const RowLayout layout{config.shape(GetParam()).observations};
   ASSERT_EQ(chunk.rows.size(), chunk.priorities.size() * layout.stride());
@@ -126,8 +128,8 @@ TEST(PhaseRollout, ShapingIsInTheRowsOfTheBpAndNotInTheRewardReported) {
   shaped.bp_reward.lane_change_shaping = -3.0;
   const std::uint64_t first = Schedule(plain).first_round(Phase::kBp);
   FakeWorld world_a(plain, 0), world_b(shaped, 0);
-  PhaseRollout a(plain, 0, world_a, first, {});
-  PhaseRollout b(shaped, 0, world_b, first, {});
+  PhaseRollout a(plain, 0, world_a, account, first, {});
+  PhaseRollout b(shaped, 0, world_b, account, first, {});
   const RowLayout layout{plain.shape(Phase::kBp).observations};
   int changes = 0;
   for (std::uint64_t round = first; round < first + 10; ++round) {
@@ -147,7 +149,8 @@ TEST(PhaseRollout, ShapingIsInTheRowsOfTheBpAndNotInTheRewardReported) {
 TEST(PhaseRollout, RefusesAnEpisodeLongerThanItsPhase) {
   const RunConfig config = small_config();
   FakeWorld world(config);
-  EXPECT_THROW(PhaseRollout(config, 0, world, 1, {0, std::vector<std::uint8_t>(41, 0)}), Failure);
+  EXPECT_THROW(PhaseRollout(config, 0, world, account, 1, {0, std::vector<std::uint8_t>(41, 0)}),
+               Failure);
 }
 
 TEST(PhaseRollout, RefusesActionsUnderCommandsThatTheRandomBpDidNotGive) {
@@ -157,7 +160,7 @@ TEST(PhaseRollout, RefusesActionsUnderCommandsThatTheRandomBpDidNotGive) {
   for (int i = 0; i < 40; ++i) {
     actions.push_back(driving::pack(i % 2 ? driving::Command::kLeft : driving::Command::kRight, 4));
   }
-  EXPECT_THROW(PhaseRollout(config, 0, world, 1, {0, actions}), Failure);
+  EXPECT_THROW(PhaseRollout(config, 0, world, account, 1, {0, actions}), Failure);
 }
 
 }  // namespace

@@ -16,6 +16,8 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
 
+constexpr int kCores = 2;
+
 TEST(MetricsLine, IsReadWithItsPlaceAndAllItsNumbers) {
   const auto line = parse_metrics_line(
       R"({"phase":"BP","round":7,"step":3584,"time_s":1.25,"charts/SPS":7000,"eval/x":null})");
@@ -100,7 +102,7 @@ class Progress : public testing::Test {
                           std::map<std::string, double, std::less<>> values = {}) {
     return {phase, round, 0, std::move(values)};
   }
-  TrainingProgress progress_{Schedule(config()), 0, 0.0};
+  TrainingProgress progress_{config(), 0, kCores, 0.0};
 };
 
 TEST_F(Progress, CountsStepsOverBothPhases) {
@@ -133,7 +135,7 @@ TEST_F(Progress, TakesTheSpeedFromTheLastHalfMinute) {
 }
 
 TEST_F(Progress, AResumedTrainingBeginsWhereItsCheckpointIs) {
-  TrainingProgress resumed(Schedule(config()), 12, 50.0);
+  TrainingProgress resumed(config(), 12, kCores, 50.0);
   EXPECT_EQ(resumed.steps_done(), 2400);
   EXPECT_THAT(resumed.headline(), HasSubstr("BP  [############........]  60.0 %"));
   resumed.on_learner(line("BP", 12), 51.0);
@@ -157,7 +159,7 @@ TEST_F(Progress, ForgetsTheFiguresOfThePhaseBefore) {
 
 TEST_F(Progress, NamesTheSideThatTheOtherWaitsFor) {
   const auto lines = [&](double for_actors, double for_weights, double for_replay) {
-    TrainingProgress progress(Schedule(config()), 0, 0.0);
+    TrainingProgress progress(config(), 0, kCores, 0.0);
     EXPECT_EQ(progress.lines().size(), 2u);
     progress.on_learner(
         line("MoP", 0,
@@ -166,7 +168,7 @@ TEST_F(Progress, NamesTheSideThatTheOtherWaitsFor) {
     progress.on_replay(line("MoP", 0, {{"replay/samples_per_insert", 31.96}}));
     progress.on_replay(line("BP", 0, {{"replay/samples_per_insert", 1.0}}));
     progress.on_actor(
-        line("MoP", 0, {{"time/wait_for_weights", for_weights}, {"time/wait_for_replay", 0.01}}));
+        line("MoP", 0, {{"time/wait_for_learner", for_weights}, {"time/wait_for_replay", 0.01}}));
     return progress.lines();
   };
   EXPECT_THAT(lines(0.4, 0.03, 0.02),
@@ -178,6 +180,27 @@ TEST_F(Progress, NamesTheSideThatTheOtherWaitsFor) {
               AllOf(HasSubstr("learner 30 % and actors 1 % for replay"),
                     HasSubstr("bottleneck: the replay server")));
   EXPECT_THAT(lines(0.03, 0.04, 0.02).back(), HasSubstr("bottleneck: none"));
+}
+
+TEST_F(Progress, NamesTheCoresWhenTheyAreBusyAndWhatTheyDo) {
+  const auto times = [](const char* part, double share, double cpu_s, double for_others) {
+    return std::map<std::string, double, std::less<>>{{part, share},
+                                                      {"time/wait_for_learner", for_others},
+                                                      {"time/wait_for_actors", for_others},
+                                                      {"time/wall_s", 10.0},
+                                                      {"time/cpu_s", cpu_s},
+                                                      {"time/cpu_of_io_s", 0.0}};
+  };
+  const int actors = config().run.actors;
+  // Two cores, of which the actors keep `busy` and the learner half of one.
+  const auto line_for = [&](double busy) {
+    TrainingProgress progress(config(), 0, 2, 0.0);
+    progress.on_learner(line("MoP", 0, times("time/update", 0.8, 5.0, 0.2)), 1.0);
+    progress.on_actor(line("MoP", 0, times("time/simulate", 0.6, 10.0 * busy / actors, 0.4)));
+    return progress.lines().back();
+  };
+  EXPECT_THAT(line_for(1.5), HasSubstr("bottleneck: the 2 cores: simulate 75 %, update 25 %"));
+  EXPECT_THAT(line_for(0.5), HasSubstr("bottleneck: the learner: update 100 %"));
 }
 
 TEST(ProgressBar, FillsFromTheLeftAndNeverOverflows) {

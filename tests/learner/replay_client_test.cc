@@ -58,22 +58,23 @@ struct Connection {
                {}) {}
   Client client;
   int waits = 0;
-  ReplayClient replay{client, [this] { ++waits; }};
+  TimeAccount time;
+  ReplayClient replay{client, time, [this] { ++waits; }};
 };
 
 // Keys count on from 0; a row's values are its key.
 std::function<std::optional<ReplayReply>(const ReplayRequest&)> batches() {
-  return [key = std::uint64_t{0}](const ReplayRequest& request) mutable
-             -> std::optional<ReplayReply> {
-    Batch batch;
-    batch.observations = 1;
-    for (std::uint32_t i = 0; i < std::get<Step>(request).count; ++i, ++key) {
-      batch.keys.push_back(key);
-      batch.weights.push_back(static_cast<float>(key));
-      batch.rows.insert(batch.rows.end(), RowLayout{1}.stride(), static_cast<float>(key));
-    }
-    return batch;
-  };
+  return
+      [key = std::uint64_t{0}](const ReplayRequest& request) mutable -> std::optional<ReplayReply> {
+        Batch batch;
+        batch.observations = 1;
+        for (std::uint32_t i = 0; i < std::get<Step>(request).count; ++i, ++key) {
+          batch.keys.push_back(key);
+          batch.weights.push_back(static_cast<float>(key));
+          batch.rows.insert(batch.rows.end(), RowLayout{1}.stride(), static_cast<float>(key));
+        }
+        return batch;
+      };
 }
 
 constexpr std::uint32_t kBatchSize = 64;
@@ -121,8 +122,8 @@ TEST(ReplayClient, DealsAStepsRowsOutToItsBatches) {
     const Batch& batch = trained[i];
     ASSERT_EQ(batch.keys.size(), kBatchSize);
     for (std::uint32_t row = 0; row < kBatchSize; ++row) {
-      const std::uint64_t key = last ? kRowsPerStep + (i - kBatchesPerStep) + 3 * row
-                                     : i + kBatchesPerStep * row;
+      const std::uint64_t key =
+          last ? kRowsPerStep + (i - kBatchesPerStep) + 3 * row : i + kBatchesPerStep * row;
       EXPECT_EQ(batch.keys[row], key);
       EXPECT_EQ(batch.weights[row], static_cast<float>(key));
       EXPECT_EQ(batch.rows[row * RowLayout{1}.stride()], static_cast<float>(key));

@@ -146,10 +146,11 @@ class SmallRun {
     Publisher publisher(server, kActors);
     Client client(replay_address, "replay server", {kRunId, Role::kLearner, 0, fresh_incarnation()},
                   {});
-    ReplayClient replay(client, [&] { publisher.service(Duration::zero()); });
+    TimeAccount time;
+    ReplayClient replay(client, time, [&] { publisher.service(Duration::zero()); });
     Training training(config_,
-                      {directory_, replay, publisher, metrics, [&] { return stop_learner_.load(); },
-                       Duration{10}},
+                      {directory_, replay, publisher, metrics, time,
+                       [&] { return stop_learner_.load(); }, Duration{10}},
                       load_state(config_, directory_));
     return training.run();
   }

@@ -205,10 +205,11 @@ TEST(Training, RefusesAReplayServerAtAnotherRound) {
     replay::serve(replay_socket, service, metrics, small_config(), [&] { return end.load(); });
   });
   Client client(address, "replay server", {kRunId, Role::kLearner, 0, 1}, {});
-  ReplayClient replay(client, [] {});
+  TimeAccount time;
+  ReplayClient replay(client, time, [] {});
   MetricsWriter metrics(place.directory.metrics("learner"));
   Training training(small_config(),
-                    {place.directory, replay, publisher, metrics, [] { return false; }},
+                    {place.directory, replay, publisher, metrics, time, [] { return false; }},
                     place.state());
   try {
     training.run();

@@ -123,9 +123,9 @@ TEST_F(ServeTest, ClientsGetWhatTheServiceAloneWouldAnswer) {
   EXPECT_EQ(line.at("round"), 31);
   EXPECT_EQ(line.at("step"), 32 * 20 * kActors);
   EXPECT_EQ(line.at("replay/size"), 150);
-  for (const char* name :
-       {"replay/inserted", "replay/sampled", "replay/samples_per_insert",
-        "replay/wait_for_actors_s", "replay/wait_for_learner_s", "replay/busy_s"}) {
+  for (const char* name : {"replay/inserted", "replay/sampled", "replay/samples_per_insert",
+                           "time/wait_for_actors", "time/wait_for_learner", "time/insert",
+                           "time/sample", "time/transport", "time/wall_s", "time/cpu_s"}) {
     EXPECT_GT(line.at(name), 0.0) << name;
   }
 }

@@ -31,7 +31,7 @@ class SumoWorldTest : public testing::Test {
 
   fs::path network() const { return directory_.path() / "road.net.xml"; }
   fs::path types() const { return directory_.path() / "traffic.rou.xml"; }
-  SumoWorld make() const { return SumoWorld(world_settings(config_), network(), types()); }
+  SumoWorld make() { return SumoWorld(world_settings(config_), network(), types(), time_); }
 
   // An ego that weaves over all lanes at changing speeds.
   driving::Trajectory weave(const Scene& scene, int step) const {
@@ -67,6 +67,7 @@ class SumoWorldTest : public testing::Test {
 
   TemporaryDirectory directory_;
   RunConfig config_;
+  TimeAccount time_;
 };
 
 // Run by the test below, in a process of its own.
@@ -236,7 +237,7 @@ TEST_F(SumoWorldTest, WritesSumosRecordOfAnEpisode) {
 
 TEST_F(SumoWorldTest, SaysWhichFileIsMissing) {
   try {
-    SumoWorld world(world_settings(config_), directory_.path() / "nowhere.net.xml", types());
+    SumoWorld world(world_settings(config_), directory_.path() / "nowhere.net.xml", types(), time_);
     FAIL();
   } catch (const Failure& failure) {
     EXPECT_THAT(failure.what(), HasSubstr("nowhere.net.xml"));

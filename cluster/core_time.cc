@@ -1,0 +1,59 @@
+#include "cluster/core_time.h"
+
+#include <algorithm>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "proto/failure.h"
+
+namespace corridor::cluster {
+namespace {
+
+constexpr std::string_view kPrefix = "time/";
+
+double value_of(const MetricsValues& values, std::string_view name) {
+  const auto found = values.find(name);
+  return found == values.end() ? 0.0 : found->second;
+}
+
+}  // namespace
+
+CoreTime cores_by_part(const MetricsValues& values) {
+  const double wall_s = value_of(values, "time/wall_s");
+  if (wall_s <= 0.0) return {};
+  CoreTime parts;
+  double busy = 0.0;
+  for (const auto& [name, value] : values) {
+    if (!name.starts_with(kPrefix) || name.ends_with("_s")) continue;
+    const std::string part = name.substr(kPrefix.size());
+    if (part.starts_with("wait_")) continue;
+    parts[part] = value;
+    busy += value;
+  }
+  const double cores = value_of(values, "time/cpu_s") / wall_s;
+  for (auto& [part, share] : parts) share *= busy > 0.0 ? cores / busy : 0.0;
+  parts["io"] = value_of(values, "time/cpu_of_io_s") / wall_s;
+  return parts;
+}
+
+double sum(const CoreTime& parts) {
+  double total = 0.0;
+  for (const auto& [part, value] : parts) total += value;
+  return total;
+}
+
+std::string largest_parts(const CoreTime& parts, int count) {
+  std::vector<std::pair<double, std::string>> sorted;
+  for (const auto& [part, value] : parts) sorted.emplace_back(-value, part);
+  std::sort(sorted.begin(), sorted.end());
+  const double total = sum(parts);
+  std::string text;
+  for (const auto& [negative, part] : sorted) {
+    if (count-- == 0 || total <= 0.0) break;
+    text += fmt::format("{}{} {:.0f} %", text.empty() ? "" : ", ", part, -100.0 * negative / total);
+  }
+  return text;
+}
+
+}  // namespace corridor::cluster
