@@ -15,9 +15,9 @@ double cpu_s(clockid_t clock) {
 
 const char* time_part_name(TimePart part) {
   constexpr std::array<const char*, kTimeParts> kNames = {
-      "simulate",        "world",           "load",    "plan",       "infer",     "insert",
-      "sample",          "update",          "publish", "checkpoint", "transport", "wait_for_actors",
-      "wait_for_replay", "wait_for_learner"};
+      "simulate",        "traffic",         "world",           "load",    "plan",       "infer",
+      "insert",          "sample",          "update",          "publish", "checkpoint", "transport",
+      "wait_for_actors", "wait_for_replay", "wait_for_learner"};
   return kNames[static_cast<std::size_t>(part)];
 }
 

@@ -16,7 +16,8 @@ namespace corridor {
 // away in any other part, so that shares, not seconds, are what to compare.
 enum class TimePart {
   kSimulate,        // actor: SUMO's own step
-  kWorld,           // actor: placing the ego, reading and changing the traffic, collisions
+  kTraffic,         // actor: vehicles enter and leave SUMO, or go blind
+  kWorld,           // actor: placing the ego, reading the vehicles, collisions
   kLoad,            // actor: SUMO loads an episode
   kPlan,            // actor: gaps, windows, observations, trajectories, rewards, transitions
   kInfer,           // actor: forward passes
@@ -30,7 +31,7 @@ enum class TimePart {
   kWaitForReplay,   // actor, learner
   kWaitForLearner,  // actor: for weights; replay: for requests
 };
-inline constexpr std::size_t kTimeParts = 14;
+inline constexpr std::size_t kTimeParts = 15;
 
 // "simulate", "wait_for_replay".
 const char* time_part_name(TimePart part);

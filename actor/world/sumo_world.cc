@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <atomic>
 #include <utility>
+#include <xercesc/util/PlatformUtils.hpp>
 
 #include "proto/failure.h"
 #include "proto/random.h"
@@ -60,10 +61,14 @@ SumoWorld::SumoWorld(const WorldSettings& settings, std::filesystem::path networ
   require_file(network_);
   require_file(vehicle_types_);
   CORRIDOR_CHECK(!world_exists.exchange(true), "libsumo holds one simulation a process");
+  // SUMO starts its XML parser for each load and ends it again, which is half of a load's cost.
+  // Starts are counted: with one more the parser stays.
+  xercesc::XMLPlatformUtils::Initialize();
 }
 
 SumoWorld::~SumoWorld() {
   if (running_) Sumo::close();
+  xercesc::XMLPlatformUtils::Terminate();
   world_exists = false;
 }
 
@@ -140,7 +145,10 @@ StepResult SumoWorld::finish_step(const driving::Ego& ego_after) {
   read_others();
   StepResult result;
   result.collision = driving::find_collision(before, scene_, settings_.ego);
-  apply(traffic_->decide(scene_));
+  const TrafficChange change = traffic_->decide(scene_);
+  time_.charge(TimePart::kWorld);
+  apply(change);
+  time_.charge(TimePart::kTraffic);
   result.scene = scene_;
   time_.charge(TimePart::kWorld);
   return result;

@@ -1,0 +1,97 @@
+// What an actor's step costs beside SUMO's own, part by part (proto/time_account.h).
+#include <benchmark/benchmark.h>
+
+#include <string>
+
+#include "actor/driving/rules.h"
+#include "actor/episode.h"
+#include "actor/policy/q_network.h"
+#include "actor/world/sumo_world.h"
+#include "proto/run_config.h"
+#include "proto/time_account.h"
+#include "scenarios/sumo_files.h"
+#include "tests/support/temporary_directory.h"
+
+namespace corridor::actor {
+namespace {
+
+const RunConfig& paper() {
+  static const RunConfig config =
+      load_run_config(std::string(CORRIDOR_SOURCE_DIR) + "/scenarios/paper.toml");
+  return config;
+}
+
+struct SumoFiles {
+  SumoFiles() { scenarios::write_sumo_files(paper(), directory.path()); }
+  testing_support::TemporaryDirectory directory;
+};
+
+// SUMO with the paper's road.
+struct Place : SumoFiles {
+  TimeAccount time;
+  world::SumoWorld world{world::world_settings(paper()), directory.path() / "road.net.xml",
+                         directory.path() / "traffic.rou.xml", time};
+};
+
+void BeginEpisode(benchmark::State& state) {
+  Place place;
+  std::uint64_t seed = 0;
+  for (auto _ : state) {
+    place.world.begin({.seed = ++seed});
+    place.world.end();
+  }
+}
+BENCHMARK(BeginEpisode)->Unit(benchmark::kMillisecond);
+
+// Episodes of the rules' planners: the traffic of an evaluation. The counters are shares of the
+// time between SUMO's loads: simulate and traffic are what SUMO needs for the same traffic without
+// an agent.
+void Step(benchmark::State& state) {
+  Place place;
+  const DrivingSettings settings = driving_settings(paper());
+  driving::RuleBasedBp bp(settings);
+  driving::RuleBasedMop mop(settings);
+  Episode episode(paper(), place.world);
+  std::uint64_t seed = 0;
+  bool ended = true;
+  for (auto _ : state) {
+    if (ended) {
+      state.PauseTiming();
+      episode.begin({.seed = ++seed});
+      bp.begin_episode(seed);
+      state.ResumeTiming();
+    }
+    const driving::Command command = bp.decide(episode.situation());
+    const int action = mop.decide(episode.situation(), episode.window(command));
+    ended = episode.step(command, action).episode_ended;
+  }
+  episode.end();
+  double steps_share = 0.0;
+  const auto times = place.time.take();
+  for (const char* part : {"time/simulate", "time/traffic", "time/world", "time/plan"}) {
+    for (const auto& [name, share] : times) {
+      if (name == part) steps_share += share;
+    }
+  }
+  for (const auto& [name, share] : times) {
+    for (const char* part : {"simulate", "traffic", "world", "plan"}) {
+      if (name == std::string("time/") + part) state.counters[part] = share / steps_share;
+    }
+  }
+}
+BENCHMARK(Step)->Unit(benchmark::kMicrosecond)->Iterations(20'000);
+
+// A greedy choice of one network.
+void Infer(benchmark::State& state) {
+  const NetworkShape shape = paper().network(static_cast<Phase>(state.range(0)));
+  policy::QNetwork network(shape, std::vector<float>(shape.parameters(), 0.01F));
+  const std::vector<float> observation(static_cast<std::size_t>(shape.observations), 0.5F);
+  for (auto _ : state) benchmark::DoNotOptimize(network.greedy(observation));
+}
+BENCHMARK(Infer)
+    ->Arg(static_cast<int>(Phase::kMop))
+    ->Arg(static_cast<int>(Phase::kBp))
+    ->Unit(benchmark::kMicrosecond);
+
+}  // namespace
+}  // namespace corridor::actor
