@@ -36,49 +36,26 @@ std::vector<float> initial_parameters(const NetworkShape& shape, std::uint64_t s
 }
 
 struct QNetwork::Impl {
-  // Views of the flat tensors.
-  struct Linear {
-    torch::Tensor weights;           // [out, in]
-    torch::Tensor biases;            // [out]
-    torch::Tensor weights_gradient;  // [out, in]
-    torch::Tensor biases_gradient;   // [out]
-
-    torch::Tensor forward(const torch::Tensor& inputs) const {
-      return at::addmm(biases, inputs, weights.t());
-    }
-    void backward(const torch::Tensor& inputs, const torch::Tensor& output_gradient) {
-      at::mm_out(weights_gradient, output_gradient.t(), inputs);
-      at::sum_out(biases_gradient, output_gradient, 0);
-    }
-  };
-
   NetworkShape shape;
   torch::Device device;
   torch::Tensor parameters;  // [parameters]
-  torch::Tensor gradient;    // [parameters]
-  std::vector<Linear> layers;
 
-  std::size_t hidden_layers() const { return shape.hidden.size(); }
+  torch::Tensor apply(const NetworkShape::Layer& layer, const torch::Tensor& inputs) const {
+    const torch::Tensor weights =
+        parameters.narrow(0, static_cast<std::int64_t>(layer.weights), layer.outputs * layer.inputs)
+            .view({layer.outputs, layer.inputs});
+    const torch::Tensor biases =
+        parameters.narrow(0, static_cast<std::int64_t>(layer.biases), layer.outputs);
+    return at::addmm(biases, inputs, weights.t());
+  }
 };
 
 QNetwork::QNetwork(const NetworkShape& shape, const std::string& device) {
   check_device(device);
   const torch::Device where(device);
   const auto size = static_cast<std::int64_t>(shape.parameters());
-  const auto options = torch::dtype(torch::kFloat32).device(where);
   impl_ = std::make_unique<Impl>(
-      Impl{shape, where, torch::zeros({size}, options), torch::zeros({size}, options), {}});
-  for (const NetworkShape::Layer& layer : shape.layers()) {
-    const auto weights = [&](const torch::Tensor& flat) {
-      return flat.narrow(0, static_cast<std::int64_t>(layer.weights), layer.outputs * layer.inputs)
-          .view({layer.outputs, layer.inputs});
-    };
-    const auto biases = [&](const torch::Tensor& flat) {
-      return flat.narrow(0, static_cast<std::int64_t>(layer.biases), layer.outputs);
-    };
-    impl_->layers.push_back({weights(impl_->parameters), biases(impl_->parameters),
-                             weights(impl_->gradient), biases(impl_->gradient)});
-  }
+      Impl{shape, where, torch::zeros({size}, torch::dtype(torch::kFloat32).device(where))});
 }
 
 QNetwork::~QNetwork() = default;
@@ -86,7 +63,7 @@ QNetwork::~QNetwork() = default;
 const NetworkShape& QNetwork::shape() const { return impl_->shape; }
 
 std::vector<float> QNetwork::parameters() const {
-  const torch::Tensor host = impl_->parameters.to(torch::kCPU);
+  const torch::Tensor host = impl_->parameters.detach().to(torch::kCPU);
   const float* begin = host.data_ptr<float>();
   return {begin, begin + host.numel()};
 }
@@ -94,6 +71,7 @@ std::vector<float> QNetwork::parameters() const {
 void QNetwork::set_parameters(std::span<const float> values) {
   CORRIDOR_CHECK(values.size() == impl_->shape.parameters(), "{} values for {} parameters",
                  values.size(), impl_->shape.parameters());
+  const torch::NoGradGuard no_gradient;
   impl_->parameters.copy_(torch::from_blob(const_cast<float*>(values.data()),
                                            {static_cast<std::int64_t>(values.size())}));
 }
@@ -104,50 +82,29 @@ std::vector<float> QNetwork::forward(std::span<const float> observations, int ba
                  "{} values for {} x {}", observations.size(), batch, inputs);
   const torch::Tensor host =
       torch::from_blob(const_cast<float*>(observations.data()), {batch, inputs});
+  const torch::NoGradGuard no_gradient;
   const torch::Tensor q = forward(host.to(impl_->device)).to(torch::kCPU).contiguous();
   return {q.data_ptr<float>(), q.data_ptr<float>() + q.numel()};
 }
 
-at::Tensor QNetwork::forward(const at::Tensor& observations,
-                             std::vector<at::Tensor>* layer_inputs) const {
-  const std::vector<Impl::Linear>& layers = impl_->layers;
+at::Tensor QNetwork::forward(const at::Tensor& observations) const {
+  const std::vector<NetworkShape::Layer> layers = impl_->shape.layers();
+  const std::size_t hidden_layers = impl_->shape.hidden.size();
   torch::Tensor hidden = observations;
-  if (layer_inputs != nullptr) layer_inputs->assign({hidden});
-  for (std::size_t i = 0; i < impl_->hidden_layers(); ++i) {
-    hidden = layers[i].forward(hidden).relu_();
-    if (layer_inputs != nullptr) layer_inputs->push_back(hidden);
+  for (std::size_t i = 0; i < hidden_layers; ++i) {
+    hidden = impl_->apply(layers[i], hidden).relu();
   }
-  const torch::Tensor last = layers.back().forward(hidden);  // Q-values, or advantages if dueling
+  const torch::Tensor last = impl_->apply(layers.back(), hidden);  // advantages, if dueling
   if (!impl_->shape.dueling) return last;
-  const torch::Tensor value = layers[impl_->hidden_layers()].forward(hidden);  // [batch, 1]
+  const torch::Tensor value = impl_->apply(layers[hidden_layers], hidden);  // [batch, 1]
   return last + (value - last.mean(1, /*keepdim=*/true));
 }
 
-void QNetwork::backward(const std::vector<at::Tensor>& layer_inputs, const at::Tensor& q_gradient) {
-  std::vector<Impl::Linear>& layers = impl_->layers;
-  const torch::Tensor& hidden = layer_inputs.back();
-  torch::Tensor last = q_gradient;  // d loss / d the last layer's outputs
-  torch::Tensor input_gradient;     // d loss / d `hidden`
-  if (impl_->shape.dueling) {
-    Impl::Linear& value_head = layers[impl_->hidden_layers()];
-    const torch::Tensor value = q_gradient.sum(1, /*keepdim=*/true);  // [batch, 1]
-    last = q_gradient - value / impl_->shape.actions;
-    value_head.backward(hidden, value);
-    input_gradient = at::mm(last, layers.back().weights).addmm_(value, value_head.weights);
-  } else {
-    input_gradient = at::mm(last, layers.back().weights);
-  }
-  layers.back().backward(hidden, last);
-
-  for (std::size_t i = impl_->hidden_layers(); i-- > 0;) {
-    // layer_inputs[i + 1] is layer i's output after its ReLU, which passes what is above 0.
-    const torch::Tensor outputs = at::threshold_backward(input_gradient, layer_inputs[i + 1], 0);
-    layers[i].backward(layer_inputs[i], outputs);
-    if (i > 0) input_gradient = at::mm(outputs, layers[i].weights);
-  }
+std::span<float> QNetwork::values() {
+  CORRIDOR_CHECK(impl_->device.is_cpu(), "parameters on {}", impl_->device.str());
+  return {impl_->parameters.data_ptr<float>(), impl_->shape.parameters()};
 }
 
 at::Tensor& QNetwork::parameter_tensor() { return impl_->parameters; }
-const at::Tensor& QNetwork::gradient_tensor() { return impl_->gradient; }
 
 }  // namespace corridor::learner

@@ -1,7 +1,6 @@
-// A Q-network in LibTorch: a multi-layer perceptron whose parameters are views of one flat buffer
-// and whose gradients are views of another, so that copies, checkpoints and Adam touch one array.
-// Its backward pass is written out: for networks and batches this small autograd costs as much as
-// the arithmetic. q_network.cc and td_update.cc are the only users of LibTorch.
+// A Q-network in LibTorch: a multi-layer perceptron whose parameters are one flat tensor, so that
+// copies, checkpoints and Adam touch one array. q_network.cc and torch_networks.cc are the only
+// users of LibTorch.
 #pragma once
 
 #include <cstdint>
@@ -45,15 +44,13 @@ class QNetwork {
   // [batch, actions], row-major, for observations [batch, observations].
   std::vector<float> forward(std::span<const float> observations, int batch) const;
 
-  // For td_update.cc. Observations are [batch, observations] on the network's device, Q-values
-  // [batch, actions]. `layer_inputs` receives what backward needs; no autograd is involved.
-  at::Tensor forward(const at::Tensor& observations,
-                     std::vector<at::Tensor>* layer_inputs = nullptr) const;
-  // Sets gradient_tensor() to d loss / d parameters, given d loss / d Q-values of that forward
-  // pass.
-  void backward(const std::vector<at::Tensor>& layer_inputs, const at::Tensor& q_gradient);
-  at::Tensor& parameter_tensor();       // [parameters]
-  const at::Tensor& gradient_tensor();  // [parameters]
+  // The parameters where they lie, in NetworkShape's order. On the CPU only (CHECK).
+  std::span<float> values();
+
+  // For torch_networks.cc: [batch, actions] for observations [batch, observations] on the network's
+  // device, differentiable in parameter_tensor().
+  at::Tensor forward(const at::Tensor& observations) const;
+  at::Tensor& parameter_tensor();  // [parameters]
 
  private:
   struct Impl;

@@ -7,20 +7,11 @@
 #include <string>
 #include <vector>
 
+#include "learner/td_networks.h"
 #include "proto/messages.h"
 #include "proto/settings.h"
 
 namespace corridor::learner {
-
-// Everything that the next update depends on besides its batch: importing it continues bit for bit.
-struct TdState {
-  std::vector<float> online;  // parameters, in NetworkShape's order
-  std::vector<float> target;
-  std::vector<float> mean_gradient;          // Adam's first moment
-  std::vector<float> mean_squared_gradient;  // Adam's second moment
-  std::uint64_t updates = 0;                 // also Adam's step
-  bool operator==(const TdState&) const = default;
-};
 
 // The state before the first update: target = online, no moments.
 TdState initial_td_state(std::vector<float> parameters);
@@ -31,10 +22,6 @@ class TdUpdate {
   // Throws Failure when the device is not there (check_device).
   TdUpdate(const NetworkShape& shape, const DqnSettings& dqn, const std::string& device,
            const TdState& state);
-  ~TdUpdate();
-  TdUpdate(const TdUpdate&) = delete;
-  TdUpdate& operator=(const TdUpdate&) = delete;
-
   struct Result {
     double loss = 0.0;              // before the step
     double q_value = 0.0;           // mean Q of the actions taken
@@ -46,13 +33,17 @@ class TdUpdate {
   // training has diverged.
   Result update(const Batch& batch, double learning_rate);
 
-  std::uint64_t updates() const;
-  std::vector<float> parameters() const;  // of the online network
-  TdState state() const;
+  std::uint64_t updates() const { return updates_; }
+  std::vector<float> parameters() const {
+    return networks_->parameters();
+  }  // of the online network
+  TdState state() const { return networks_->state(); }
 
  private:
-  struct Impl;
-  std::unique_ptr<Impl> impl_;
+  NetworkShape shape_;
+  DqnSettings dqn_;
+  std::unique_ptr<TdNetworks> networks_;
+  std::uint64_t updates_;
 };
 
 }  // namespace corridor::learner

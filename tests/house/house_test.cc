@@ -92,7 +92,7 @@ TEST(House, EachForeignLibraryIsUsedByItsAdapterOnly) {
       {{"libsumo/", "xercesc/"}, {"actor/world/sumo_world.cc"}},
       {{"zmq"}, {"proto/endpoint.cc"}},
       {{"capnp/", "kj/", "proto/wire.capnp.h"}, {"proto/codec.cc"}},
-      {{"torch/", "ATen/", "c10/"}, {"learner/q_network.", "learner/td_update.", "learner/blas."}},
+      {{"torch/", "ATen/", "c10/"}, {"learner/q_network.", "learner/torch_networks.", "learner/blas."}},
       {{"toml"}, {"proto/run_config.cc"}},
       {{"Eigen/"}, {"actor/policy/", "actor/driving/"}},
   };

@@ -1,0 +1,53 @@
+// The online and the target network of a training step, and what the step does to them. Two ways to
+// compute it: on the CPU by hand (cpu_networks.cc), and by LibTorch's autograd and optimiser on any
+// device (torch_networks.cc), which is also what the first is tested against.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "learner/td_loss.h"
+#include "proto/settings.h"
+#include "proto/transition.h"
+
+namespace corridor::learner {
+
+// Everything that the next update depends on besides its batch: importing it continues bit for bit.
+struct TdState {
+  std::vector<float> online;  // parameters, in NetworkShape's order
+  std::vector<float> target;
+  std::vector<float> mean_gradient;          // Adam's first moment
+  std::vector<float> mean_squared_gradient;  // Adam's second moment
+  std::uint64_t updates = 0;                 // also Adam's step
+  bool operator==(const TdState&) const = default;
+};
+
+class TdNetworks {
+ public:
+  virtual ~TdNetworks() = default;
+
+  // Q-values of whole rows (proto/transition.h: RowLayout): by the online network at the
+  // observations, by both at the next observations (the online one's only where double_q wants
+  // them). `rows` and the answer stay valid until the next call.
+  virtual BatchQValues forward(std::span<const float> rows, int batch) = 0;
+
+  // Given d loss / d online of that forward pass: the gradient, clipped to gradient_norm_max, into
+  // Adam. Returns the gradient's norm before clipping.
+  virtual double step(std::span<const float> q_gradient, double learning_rate) = 0;
+
+  virtual void copy_to_target() = 0;
+
+  virtual std::vector<float> parameters() const = 0;  // of the online network
+  virtual TdState state() const = 0;                  // updates: steps so far
+};
+
+// `state`'s vectors have the shape's size. Both throw Failure as check_device does.
+std::unique_ptr<TdNetworks> cpu_networks(const NetworkShape& shape, const DqnSettings& dqn,
+                                         const TdState& state);
+std::unique_ptr<TdNetworks> torch_networks(const NetworkShape& shape, const DqnSettings& dqn,
+                                           const std::string& device, const TdState& state);
+
+}  // namespace corridor::learner
