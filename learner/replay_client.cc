@@ -40,8 +40,8 @@ void every_nth(const Batch& drawn, std::size_t first, std::size_t n, Batch& batc
 
 }  // namespace
 
-ReplayClient::ReplayClient(Client& client, TimeAccount& time, std::function<void()> on_wait)
-    : client_(client), time_(time), on_wait_(std::move(on_wait)) {}
+ReplayClient::ReplayClient(Client& client, TimeAccount& time, std::function<void()> between)
+    : client_(client), time_(time), between_(std::move(between)) {}
 
 void ReplayClient::send(const ReplayRequest& request) { client_.send(encode(request)); }
 
@@ -49,9 +49,13 @@ std::optional<Bytes> ReplayClient::glance(TimePart waiting) {
   std::optional<Bytes> body = client_.receive(kGlance);
   time_.charge(waiting);
   if (body) return body;
-  on_wait_();
-  time_.charge(TimePart::kPublish);
+  do_between();
   return std::nullopt;
+}
+
+void ReplayClient::do_between() {
+  between_();
+  time_.charge(TimePart::kPublish);
 }
 
 template <typename Reply>
@@ -119,6 +123,8 @@ void ReplayClient::run_block(const Block& block,
     }
     next.keys = std::move(drawn.keys);
     send(next);
+    time_.charge(TimePart::kTransport);
+    do_between();
   }
   for (std::uint32_t i = 0; i < std::min(steps, kDepth); ++i) receive_batch(0);
 }

@@ -31,9 +31,9 @@ struct Block {
 // Every function throws Failure when the server is lost, refuses, or answers something else.
 class ReplayClient {
  public:
-  // `on_wait` is called about every millisecond while an answer is awaited. Waiting and transport
-  // are charged to `time`.
-  ReplayClient(Client& client, TimeAccount& time, std::function<void()> on_wait);
+  // `between` is called after every step of a block, and about every millisecond while an answer is
+  // awaited. It, waiting and transport are charged to `time`.
+  ReplayClient(Client& client, TimeAccount& time, std::function<void()> between);
 
   // The first message. Throws Failure unless the server goes on with block `next_round`.
   void join(std::uint64_t next_round);
@@ -52,6 +52,7 @@ class ReplayClient {
 
  private:
   void send(const ReplayRequest& request);
+  void do_between();
   // One look at the socket.
   std::optional<Bytes> glance(TimePart waiting);
   template <typename Reply>
@@ -60,7 +61,7 @@ class ReplayClient {
 
   Client& client_;
   TimeAccount& time_;
-  std::function<void()> on_wait_;
+  std::function<void()> between_;
   Batch batch_;  // scratch of run_block
 };
 

@@ -172,8 +172,6 @@ Training::BlockResult Training::train_block(std::uint64_t round, const Opened& o
     around_.time.charge(TimePart::kUpdate);
     result.loss += update.loss / opened.batches;
     result.q_value += update.q_value / opened.batches;
-    around_.publisher.service(Duration::zero());
-    around_.time.charge(TimePart::kPublish);
     return std::move(update.priorities);
   });
   result.updates = td_->updates();

@@ -1,13 +1,22 @@
 #include "replay/store.h"
 
+#include <sys/mman.h>
+
 #include <algorithm>
 #include <cmath>
+#include <cstring>
+#include <new>
 
 #include "proto/failure.h"
 #include "proto/random.h"
+#include "replay/power.h"
 
 namespace corridor::replay {
 namespace {
+
+// A row is asked for so many rows before it is copied: memory answers about so late.
+constexpr std::uint32_t kRowsAhead = 8;
+constexpr std::size_t kFloatsPerCacheLine = 16;
 
 std::uint64_t number(const TensorFile& file, const std::string& tensor, const std::string& name) {
   const auto& values = file.get<std::uint64_t>(tensor, name);
@@ -28,24 +37,41 @@ bool are_priorities(std::span<const float> values) {
 Store::Store(const DqnSettings& settings, RowLayout layout, std::uint64_t seed, Phase phase,
              std::uint64_t first_key)
     : capacity_(static_cast<std::size_t>(settings.capacity)),
-      priority_exponent_(settings.priority_exponent),
-      priority_offset_(settings.priority_offset),
+      priority_exponent_(static_cast<float>(settings.priority_exponent)),
+      priority_offset_(static_cast<float>(settings.priority_offset)),
       layout_(layout),
       seed_(seed),
       phase_(phase),
       first_key_(first_key),
       next_key_(first_key),
-      rows_(capacity_ * layout.stride()),
+      rows_(uninitialised(capacity_ * layout.stride())),
       tree_(capacity_) {
-  CORRIDOR_CHECK(priority_offset_ > 0.0, "priority_offset {}", priority_offset_);
+  CORRIDOR_CHECK(priority_offset_ > 0.0F, "priority_offset {}", priority_offset_);
+}
+
+// In huge pages where the system has them: a row is somewhere in hundreds of megabytes, and an
+// address that the processor does not know costs as much as the row.
+std::unique_ptr<float[], Store::Free> Store::uninitialised(std::size_t floats) {
+  constexpr std::size_t kHugePage = 2 * 1024 * 1024;
+  const std::size_t bytes = (floats * sizeof(float) + kHugePage - 1) / kHugePage * kHugePage;
+  auto* memory = static_cast<float*>(std::aligned_alloc(kHugePage, bytes));
+  if (memory == nullptr) throw std::bad_alloc();
+  madvise(memory, bytes, MADV_HUGEPAGE);
+  return std::unique_ptr<float[], Free>(memory);
 }
 
 std::uint64_t Store::oldest_key() const {
   return next_key_ - std::min<std::uint64_t>(next_key_ - first_key_, capacity_);
 }
 
-double Store::leaf(float priority) const {
-  return std::pow(static_cast<double>(priority) + priority_offset_, priority_exponent_);
+// slots_ take the leaves of these |TD errors|.
+void Store::set_leaves(std::span<const float> priorities) {
+  leaves_.resize(priorities.size());
+  for (std::size_t i = 0; i < priorities.size(); ++i) {
+    leaves_[i] = priorities[i] + priority_offset_;
+  }
+  power(leaves_, priority_exponent_, leaves_);
+  tree_.set(slots_, leaves_);
 }
 
 void Store::insert(std::span<const float> rows, std::span<const float> priorities) {
@@ -53,32 +79,33 @@ void Store::insert(std::span<const float> rows, std::span<const float> prioritie
   CORRIDOR_CHECK(rows.size() == priorities.size() * stride, "{} floats for {} rows of {}",
                  rows.size(), priorities.size(), stride);
   slots_.clear();
-  numbers_.clear();
-  for (std::size_t i = 0; i < priorities.size(); ++i) {
-    const std::uint64_t slot = next_key_++ % capacity_;
-    std::copy_n(rows.begin() + static_cast<std::ptrdiff_t>(i * stride), stride,
-                rows_.begin() + static_cast<std::ptrdiff_t>(slot * stride));
-    slots_.push_back(slot);
-    numbers_.push_back(leaf(priorities[i]));
+  for (std::size_t i = 0; i < priorities.size(); ++i) slots_.push_back((next_key_ + i) % capacity_);
+  // Up to the ring's end at once.
+  for (std::size_t i = 0; i < priorities.size();) {
+    const std::size_t count = std::min<std::size_t>(priorities.size() - i, capacity_ - slots_[i]);
+    std::memcpy(row(slots_[i]), rows.data() + i * stride, count * stride * sizeof(float));
+    i += count;
   }
-  tree_.set(slots_, numbers_);
+  next_key_ += priorities.size();
+  set_leaves(priorities);
 }
 
 void Store::update(std::span<const std::uint64_t> keys, std::span<const float> priorities) {
   CORRIDOR_CHECK(keys.size() == priorities.size(), "{} keys, {} priorities", keys.size(),
                  priorities.size());
   slots_.clear();
-  numbers_.clear();
+  fresh_.clear();
+  const std::uint64_t oldest = oldest_key();
   for (std::size_t i = 0; i < keys.size(); ++i) {
     CORRIDOR_CHECK(keys[i] < next_key_, "key {} of {}", keys[i], next_key_);
-    if (keys[i] < oldest_key()) {
+    if (keys[i] < oldest) {
       ++stale_priorities_;
       continue;
     }
     slots_.push_back(keys[i] % capacity_);
-    numbers_.push_back(leaf(priorities[i]));
+    fresh_.push_back(priorities[i]);
   }
-  tree_.set(slots_, numbers_);
+  set_leaves(fresh_);
 }
 
 Batch Store::sample(std::uint32_t count, double importance_exponent) {
@@ -86,48 +113,55 @@ Batch Store::sample(std::uint32_t count, double importance_exponent) {
   batch.observations = static_cast<std::uint32_t>(layout_.observations);
   if (count == 0) return batch;
 
-  numbers_.clear();
+  units_.resize(count);
   for (std::uint32_t i = 0; i < count; ++i) {
     const double unit = random_unit(seed_, Purpose::kReplaySampling,
                                     {static_cast<std::uint64_t>(phase_), sampled_++});
-    numbers_.push_back((i + unit) / count);
+    units_[i] = (i + unit) / count;
   }
   slots_.resize(count);
-  tree_.sample(numbers_, slots_);
+  tree_.sample(units_, slots_);
 
   const std::size_t stride = layout_.stride();
-  batch.rows.reserve(count * stride);
-  batch.keys.reserve(count);
-  batch.weights.reserve(count);
+  batch.rows.resize(count * stride);
+  batch.keys.resize(count);
+  batch.weights.resize(count);
+  leaves_.resize(count);
   const std::uint64_t oldest = oldest_key();
   const std::uint64_t oldest_slot = oldest % capacity_;
-  double smallest_leaf = tree_.value(slots_[0]);
-  for (const std::uint64_t slot : slots_) {
-    const auto row = rows_.begin() + static_cast<std::ptrdiff_t>(slot * stride);
-    batch.rows.insert(batch.rows.end(), row, row + static_cast<std::ptrdiff_t>(stride));
+  for (std::uint32_t i = 0; i < count; ++i) {
+    if (i + kRowsAhead < count) prefetch(slots_[i + kRowsAhead]);
+    const std::uint64_t slot = slots_[i];
+    std::memcpy(batch.rows.data() + i * stride, row(slot), stride * sizeof(float));
     const std::uint64_t age =
         slot >= oldest_slot ? slot - oldest_slot : slot + capacity_ - oldest_slot;
-    batch.keys.push_back(oldest + age);
-    smallest_leaf = std::min(smallest_leaf, tree_.value(slot));
+    batch.keys[i] = oldest + age;
+    leaves_[i] = tree_.value(slot);
   }
   // The least probable row has the largest weight, and size and total cancel out in the quotient.
-  for (const std::uint64_t slot : slots_) {
-    batch.weights.push_back(
-        static_cast<float>(std::pow(smallest_leaf / tree_.value(slot), importance_exponent)));
-  }
+  const float smallest = *std::min_element(leaves_.begin(), leaves_.end());
+  for (float& leaf : leaves_) leaf = smallest / leaf;
+  power(leaves_, static_cast<float>(importance_exponent), batch.weights);
   return batch;
+}
+
+void Store::prefetch(std::uint64_t slot) const {
+  const float* const last = row(slot) + layout_.stride() - 1;
+  for (const float* line = row(slot); line < last; line += kFloatsPerCacheLine) {
+    __builtin_prefetch(line);
+  }
+  __builtin_prefetch(last);
 }
 
 void Store::save(TensorFile& file) const {
   const std::size_t stride = layout_.stride();
   std::vector<float> rows;
-  std::vector<double> leaves;
+  std::vector<float> leaves;
   rows.reserve(size() * stride);
   leaves.reserve(size());
   for (std::uint64_t key = oldest_key(); key < next_key_; ++key) {
     const std::uint64_t slot = key % capacity_;
-    const auto row = rows_.begin() + static_cast<std::ptrdiff_t>(slot * stride);
-    rows.insert(rows.end(), row, row + static_cast<std::ptrdiff_t>(stride));
+    rows.insert(rows.end(), row(slot), row(slot) + stride);
     leaves.push_back(tree_.value(slot));
   }
   file.tensors.insert_or_assign("rows", Tensor{{leaves.size(), stride}, std::move(rows)});
@@ -141,7 +175,7 @@ void Store::save(TensorFile& file) const {
 void Store::load(const TensorFile& file, const std::string& name) {
   CORRIDOR_CHECK(inserted() == 0, "{} rows in the way", inserted());
   const auto& rows = file.get<float>("rows", name);
-  const auto& leaves = file.get<double>("leaves", name);
+  const auto& leaves = file.get<float>("leaves", name);
   first_key_ = number(file, "first_key", name);
   next_key_ = number(file, "next_key", name);
   sampled_ = number(file, "sampled", name);
@@ -151,7 +185,7 @@ void Store::load(const TensorFile& file, const std::string& name) {
   const bool fits = first_key_ <= next_key_ && leaves.size() == size() &&
                     rows.size() == leaves.size() * stride &&
                     std::all_of(leaves.begin(), leaves.end(),
-                                [](double value) { return std::isfinite(value) && value >= 0.0; });
+                                [](float value) { return std::isfinite(value) && value >= 0.0F; });
   if (!fits) {
     throw Failure(
         "{}: {} floats and {} priorities for keys {} to {} of rows of {} floats, capacity {}; the "
@@ -161,8 +195,7 @@ void Store::load(const TensorFile& file, const std::string& name) {
   slots_.clear();
   for (std::size_t i = 0; i < leaves.size(); ++i) {
     const std::uint64_t slot = (oldest_key() + i) % capacity_;
-    std::copy_n(rows.begin() + static_cast<std::ptrdiff_t>(i * stride), stride,
-                rows_.begin() + static_cast<std::ptrdiff_t>(slot * stride));
+    std::copy_n(rows.begin() + static_cast<std::ptrdiff_t>(i * stride), stride, row(slot));
     slots_.push_back(slot);
   }
   tree_.set(slots_, leaves);

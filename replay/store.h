@@ -6,11 +6,13 @@
 // never reaches the slot's next tenant.
 //
 // Priorities come in as |TD error|; the exponent alpha is applied here and nowhere else:
-// leaf = (|TD error| + offset)^alpha, > 0 since the offset is. Cost: one copy of a row in, one out,
-// and the tree's. One thread.
+// leaf = (|TD error| + offset)^alpha (power.h), > 0 since the offset is. Cost: one copy of a row
+// in, one out, and the tree's. One thread.
 #pragma once
 
 #include <cstdint>
+#include <cstdlib>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -58,12 +60,19 @@ class Store {
   void load(const TensorFile& file, const std::string& name);
 
  private:
+  struct Free {
+    void operator()(float* memory) const { std::free(memory); }
+  };
+  static std::unique_ptr<float[], Free> uninitialised(std::size_t floats);
+
   std::uint64_t oldest_key() const;
-  double leaf(float priority) const;
+  float* row(std::uint64_t slot) const { return rows_.get() + slot * layout_.stride(); }
+  void prefetch(std::uint64_t slot) const;
+  void set_leaves(std::span<const float> priorities);
 
   std::size_t capacity_;
-  double priority_exponent_;
-  double priority_offset_;
+  float priority_exponent_;
+  float priority_offset_;
   RowLayout layout_;
   std::uint64_t seed_;
   Phase phase_;
@@ -72,12 +81,14 @@ class Store {
   std::uint64_t next_key_;
   std::uint64_t sampled_ = 0;
   std::uint64_t stale_priorities_ = 0;
-  std::vector<float> rows_;  // [slot, stride]
+  std::unique_ptr<float[], Free> rows_;  // [slot, stride]
   SumTree tree_;
 
   // Scratch of one call.
   std::vector<std::uint64_t> slots_;
-  std::vector<double> numbers_;
+  std::vector<float> fresh_;
+  std::vector<float> leaves_;
+  std::vector<double> units_;
 };
 
 }  // namespace corridor::replay

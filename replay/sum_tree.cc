@@ -1,60 +1,121 @@
 #include "replay/sum_tree.h"
 
-#include <bit>
+#include <algorithm>
 #include <cmath>
 
 #include "proto/failure.h"
 
 namespace corridor::replay {
+namespace {
 
-SumTree::SumTree(std::size_t capacity)
-    : capacity_(capacity), leaves_(std::bit_ceil(capacity)), nodes_(2 * leaves_, 0.0) {
-  CORRIDOR_CHECK(capacity >= 1, "capacity {}", capacity);
+constexpr std::size_t kGroup = 4;  // children are added, and looked through, four by four
+
+template <typename T>
+double sum_of_group(const T* child) {
+  return (static_cast<double>(child[0]) + child[1]) + (static_cast<double>(child[2]) + child[3]);
 }
 
-void SumTree::set(std::span<const std::uint64_t> slots, std::span<const double> values) {
+// In halves, which the compiler adds side by side.
+template <typename T>
+double sum_of(const T* child) {
+  double sums[8];
+  for (int i = 0; i < 8; ++i) sums[i] = static_cast<double>(child[i]) + child[i + 8];
+  for (int i = 0; i < 4; ++i) sums[i] += sums[i + 4];
+  return (sums[0] + sums[2]) + (sums[1] + sums[3]);
+}
+
+// Which of four the point lies in, laid end to end; the point then counts from that one's begin.
+// Without a branch: which one it is, is random.
+std::size_t pick(double first, double second, double third, double& point) {
+  const double end_of_second = first + second;
+  const double end_of_third = end_of_second + third;
+  const std::size_t index = static_cast<std::size_t>(point >= first) +
+                            static_cast<std::size_t>(point >= end_of_second) +
+                            static_cast<std::size_t>(point >= end_of_third);
+  const double begins[4] = {0.0, first, end_of_second, end_of_third};
+  point -= begins[index];
+  return index;
+}
+
+template <typename T>
+std::size_t child_at(const T* child, double& point) {
+  const std::size_t group = pick(sum_of_group(child), sum_of_group(child + kGroup),
+                                 sum_of_group(child + 2 * kGroup), point);
+  const T* of_group = child + kGroup * group;
+  const std::size_t index = kGroup * group + pick(of_group[0], of_group[1], of_group[2], point);
+  if (child[index] > T{0}) [[likely]]
+    return index;
+  // Rounding has left the point at or beyond the end of the node's share: it belongs to the last
+  // child that has one, and stays at the end of that.
+  std::size_t last = index;
+  while (last > 0 && !(child[last] > T{0})) --last;
+  point = static_cast<double>(child[last]);
+  return last;
+}
+
+}  // namespace
+
+SumTree::SumTree(std::size_t capacity)
+    : capacity_(capacity), values_((capacity + kFanOut - 1) / kFanOut) {
+  CORRIDOR_CHECK(capacity >= 1, "capacity {}", capacity);
+  for (std::size_t nodes = values_.size(); nodes > 1;) {
+    nodes = (nodes + kFanOut - 1) / kFanOut;
+    sums_.emplace_back(nodes);
+  }
+}
+
+void SumTree::set(std::span<const std::uint64_t> slots, std::span<const float> values) {
   CORRIDOR_CHECK(slots.size() == values.size(), "{} slots, {} values", slots.size(), values.size());
   climbing_.clear();
   for (std::size_t i = 0; i < slots.size(); ++i) {
     CORRIDOR_CHECK(slots[i] < capacity_, "slot {} of {}", slots[i], capacity_);
-    CORRIDOR_CHECK(std::isfinite(values[i]) && values[i] >= 0.0, "value {}", values[i]);
-    nodes_[leaves_ + slots[i]] = values[i];
-    climbing_.push_back(leaves_ + slots[i]);
+    CORRIDOR_CHECK(std::isfinite(values[i]) && values[i] >= 0.0F, "value {}", values[i]);
+    const std::size_t node = slots[i] / kFanOut;
+    values_[node].children[slots[i] % kFanOut] = values[i];
+    if (climbing_.empty() || climbing_.back() != node) climbing_.push_back(node);
   }
-  // Level by level, so that both children are final before their sum is taken.
-  for (std::size_t width = leaves_; width > 1; width /= 2) {
+  climb();
+}
+
+// Level by level, so that all children are final before their sum is taken.
+void SumTree::climb() {
+  for (std::size_t level = 0; level < sums_.size(); ++level) {
     std::size_t parents = 0;
     for (const std::size_t node : climbing_) {
-      const std::size_t parent = node / 2;
-      if (parents > 0 && climbing_[parents - 1] == parent) continue;
-      nodes_[parent] = nodes_[2 * parent] + nodes_[2 * parent + 1];
-      climbing_[parents++] = parent;
+      const double sum =
+          level == 0 ? sum_of(values_[node].children) : sum_of(sums_[level - 1][node].children);
+      const std::size_t parent = node / kFanOut;
+      sums_[level][parent].children[node % kFanOut] = sum;
+      if (parents == 0 || climbing_[parents - 1] != parent) climbing_[parents++] = parent;
     }
     climbing_.resize(parents);
   }
-  CORRIDOR_CHECK(std::isfinite(total()), "the values' sum overflows");
+  total_ = sums_.empty() ? sum_of(values_[0].children) : sum_of(sums_.back()[0].children);
 }
 
 void SumTree::sample(std::span<const double> units, std::span<std::uint64_t> slots) const {
   CORRIDOR_CHECK(units.size() == slots.size(), "{} units, {} slots", units.size(), slots.size());
-  CORRIDOR_CHECK(total() > 0.0, "nothing to draw from");
+  CORRIDOR_CHECK(total_ > 0.0, "nothing to draw from");
+  points_.resize(units.size());
   for (std::size_t i = 0; i < units.size(); ++i) {
     CORRIDOR_CHECK(units[i] >= 0.0 && units[i] <= 1.0, "unit {}", units[i]);
-    double point = units[i] * total();
-    std::size_t node = 1;
-    while (node < leaves_) {
-      const double left = nodes_[2 * node];
-      const double right = nodes_[2 * node + 1];
-      // Rounding may leave the point at or beyond the end of the node's share. Never entering an
-      // empty right half keeps every node on the way positive, down to the slot.
-      if (point < left || right == 0.0) {
-        node = 2 * node;
+    points_[i] = units[i] * total_;
+    slots[i] = 0;  // the node, until the last level makes it the slot
+  }
+  for (std::size_t level = sums_.size(); level-- > 0;) {
+    const Node<double>* nodes = sums_[level].data();
+    for (std::size_t i = 0; i < slots.size(); ++i) {
+      slots[i] = kFanOut * slots[i] + child_at(nodes[slots[i]].children, points_[i]);
+      if (level > 0) {
+        __builtin_prefetch(&sums_[level - 1][slots[i]].children[0]);
+        __builtin_prefetch(&sums_[level - 1][slots[i]].children[kFanOut / 2]);
       } else {
-        point -= left;
-        node = 2 * node + 1;
+        __builtin_prefetch(&values_[slots[i]]);
       }
     }
-    slots[i] = node - leaves_;
+  }
+  for (std::size_t i = 0; i < slots.size(); ++i) {
+    slots[i] = kFanOut * slots[i] + child_at(values_[slots[i]].children, points_[i]);
   }
 }
 

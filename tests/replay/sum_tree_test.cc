@@ -26,15 +26,15 @@ std::vector<std::uint64_t> slots_below(std::uint64_t count) {
 }
 
 // Log-uniform from 1e-6 to 1e3, in no order, every tenth zero.
-std::vector<double> skewed_values(std::size_t count) {
-  std::vector<double> values(count);
+std::vector<float> skewed_values(std::size_t count) {
+  std::vector<float> values(count);
   for (std::size_t i = 0; i < count; ++i) {
-    values[i] = i % 10 == 9 ? 0.0 : std::pow(10.0, -6.0 + 9.0 * unit(0, i));
+    values[i] = i % 10 == 9 ? 0.0F : static_cast<float>(std::pow(10.0, -6.0 + 9.0 * unit(0, i)));
   }
   return values;
 }
 
-SumTree tree_of(const std::vector<double>& values) {
+SumTree tree_of(const std::vector<float>& values) {
   SumTree tree(values.size());
   tree.set(slots_below(values.size()), values);
   return tree;
@@ -48,7 +48,7 @@ std::uint64_t slot_at(const SumTree& tree, double point) {
 
 TEST(SumTreeTest, EverySlotOwnsItsShareOfTheLineOverNineMagnitudes) {
   // A capacity that is no power of two.
-  const std::vector<double> values = skewed_values(3001);
+  const std::vector<float> values = skewed_values(3001);
   const SumTree tree = tree_of(values);
   long double before = 0.0L;
   for (std::size_t slot = 0; slot < values.size(); ++slot) {
@@ -64,10 +64,10 @@ TEST(SumTreeTest, EverySlotOwnsItsShareOfTheLineOverNineMagnitudes) {
 }
 
 TEST(SumTreeTest, DrawsInProportionToSkewedValues) {
-  const std::vector<double> values = skewed_values(3000);
+  const std::vector<float> values = skewed_values(3000);
   const SumTree tree = tree_of(values);
   std::vector<double> probabilities;
-  for (const double value : values) probabilities.push_back(value / tree.total());
+  for (const float value : values) probabilities.push_back(value / tree.total());
 
   std::vector<double> units(1'000'000);
   for (std::size_t i = 0; i < units.size(); ++i) units[i] = unit(1, i);
@@ -86,16 +86,16 @@ TEST(SumTreeTest, DrawsInProportionToSkewedValues) {
 TEST(SumTreeTest, NeverDrawsAZeroEvenAtTheEdgesOfTheLine) {
   // Sums of tenths round, so that the line's end and the last share's end differ.
   for (std::size_t count = 1; count < 70; ++count) {
-    std::vector<double> values(count + 2, 0.1);
-    values.front() = 0.0;
-    values.back() = 0.0;
+    std::vector<float> values(count + 2, 0.1F);
+    values.front() = 0.0F;
+    values.back() = 0.0F;
     const SumTree tree = tree_of(values);
     EXPECT_EQ(slot_at(tree, 0.0), 1U);
     EXPECT_EQ(slot_at(tree, std::nextafter(1.0, 0.0)), count);
     EXPECT_EQ(slot_at(tree, 1.0), count);
   }
-  std::vector<double> values(1000, 0.0);
-  values[617] = std::numeric_limits<double>::denorm_min();
+  std::vector<float> values(1000, 0.0F);
+  values[617] = std::numeric_limits<float>::denorm_min();
   const SumTree tree = tree_of(values);
   for (std::uint64_t i = 0; i < 1000; ++i) EXPECT_EQ(slot_at(tree, unit(2, i)), 617U);
 }
@@ -103,14 +103,14 @@ TEST(SumTreeTest, NeverDrawsAZeroEvenAtTheEdgesOfTheLine) {
 TEST(SumTreeTest, AMillionUpdatesLeaveTheBitsOfAFreshTree) {
   constexpr std::size_t kCapacity = 1000;
   SumTree tree(kCapacity);
-  std::vector<double> values(kCapacity, 0.0);
+  std::vector<float> values(kCapacity, 0.0F);
   std::vector<std::uint64_t> slots(50);
-  std::vector<double> updates(50);
+  std::vector<float> updates(50);
   for (std::uint64_t batch = 0; batch < 20'000; ++batch) {
     for (std::size_t i = 0; i < slots.size(); ++i) {
       const std::uint64_t draw = batch * slots.size() + i;
       slots[i] = static_cast<std::uint64_t>(unit(3, draw) * kCapacity);
-      updates[i] = std::pow(10.0, -6.0 + 9.0 * unit(4, draw));
+      updates[i] = static_cast<float>(std::pow(10.0, -6.0 + 9.0 * unit(4, draw)));
       values[slots[i]] = updates[i];
     }
     tree.set(slots, updates);
@@ -126,14 +126,14 @@ TEST(SumTreeTest, AMillionUpdatesLeaveTheBitsOfAFreshTree) {
 
 TEST(SumTreeTest, ASlotNamedTwiceKeepsTheLastValue) {
   SumTree tree(5);
-  tree.set(std::vector<std::uint64_t>{3, 1, 3}, std::vector<double>{8.0, 2.0, 4.0});
+  tree.set(std::vector<std::uint64_t>{3, 1, 3}, std::vector<float>{8.0F, 2.0F, 4.0F});
   EXPECT_EQ(tree.value(3), 4.0);
   EXPECT_EQ(tree.total(), 6.0);
 }
 
 TEST(SumTreeTest, OneSlotIsATree) {
   SumTree tree(1);
-  tree.set(std::vector<std::uint64_t>{0}, std::vector<double>{2.5});
+  tree.set(std::vector<std::uint64_t>{0}, std::vector<float>{2.5F});
   EXPECT_EQ(tree.total(), 2.5);
   EXPECT_EQ(slot_at(tree, 0.99), 0U);
 }
@@ -141,10 +141,10 @@ TEST(SumTreeTest, OneSlotIsATree) {
 TEST(SumTreeDeathTest, ValuesThatAreNoSharesAreBugs) {
   SumTree tree(4);
   const std::vector<std::uint64_t> slot{2};
-  EXPECT_DEATH(tree.set(slot, std::vector{-1.0}), "value -1");
-  EXPECT_DEATH(tree.set(slot, std::vector{std::nan("")}), "value nan");
-  EXPECT_DEATH(tree.set(slot, std::vector{std::numeric_limits<double>::infinity()}), "value inf");
-  EXPECT_DEATH(tree.set(std::vector<std::uint64_t>{4}, std::vector{1.0}), "slot 4 of 4");
+  EXPECT_DEATH(tree.set(slot, std::vector{-1.0F}), "value -1");
+  EXPECT_DEATH(tree.set(slot, std::vector{std::nanf("")}), "value nan");
+  EXPECT_DEATH(tree.set(slot, std::vector{std::numeric_limits<float>::infinity()}), "value inf");
+  EXPECT_DEATH(tree.set(std::vector<std::uint64_t>{4}, std::vector{1.0F}), "slot 4 of 4");
   EXPECT_DEATH(slot_at(tree, 0.5), "nothing to draw from");
 }
 
