@@ -25,7 +25,7 @@ constexpr Duration kPatience{100};
 constexpr std::int64_t kStepsPerMetricsLine = 4000;
 
 // The next answer; nothing when the process is asked to stop first.
-std::optional<Bytes> answer(Client& client) {
+std::optional<Body> answer(Client& client) {
   while (!stop_requested()) {
     if (auto body = client.receive(kPatience)) return body;
   }

@@ -12,7 +12,7 @@ namespace {
 constexpr Duration kGlance{1};
 
 template <typename Reply>
-Reply expect(const Bytes& body) {
+Reply expect(ByteView body) {
   try {
     ReplayReply reply = decode_replay_reply(body);
     if (Reply* expected = std::get_if<Reply>(&reply)) return std::move(*expected);
@@ -45,8 +45,8 @@ ReplayClient::ReplayClient(Client& client, TimeAccount& time, std::function<void
 
 void ReplayClient::send(const ReplayRequest& request) { client_.send(encode(request)); }
 
-std::optional<Bytes> ReplayClient::glance(TimePart waiting) {
-  std::optional<Bytes> body = client_.receive(kGlance);
+std::optional<Body> ReplayClient::glance(TimePart waiting) {
+  std::optional<Body> body = client_.receive(kGlance);
   time_.charge(waiting);
   if (body) return body;
   do_between();

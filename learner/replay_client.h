@@ -54,7 +54,7 @@ class ReplayClient {
   void send(const ReplayRequest& request);
   void do_between();
   // One look at the socket.
-  std::optional<Bytes> glance(TimePart waiting);
+  std::optional<Body> glance(TimePart waiting);
   template <typename Reply>
   Reply receive();
   Batch receive_batch(std::size_t rows);

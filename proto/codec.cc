@@ -232,9 +232,9 @@ std::vector<T> values_of(capnp::Data::Reader data, const char* name,
   require(data.size() <= bytes_max, "{} has {} bytes, more than {}", name, data.size(), bytes_max);
   require(data.size() % sizeof(T) == 0, "{} has {} bytes, no multiple of {}", name, data.size(),
           sizeof(T));
-  std::vector<T> values(data.size() / sizeof(T));
-  if (!values.empty()) std::memcpy(values.data(), data.begin(), data.size());
-  return values;
+  // Cap'n Proto's data begin at whole words.
+  const auto* first = reinterpret_cast<const T*>(data.begin());
+  return {first, first + data.size() / sizeof(T)};
 }
 
 std::string string_of(capnp::Text::Reader text, const char* name, std::size_t bytes_max) {

@@ -87,9 +87,9 @@ ByteView view(const zmq::message_t& message) {
   return {static_cast<const std::byte*>(message.data()), message.size()};
 }
 
-Bytes bytes_of(const zmq::message_t& message) {
-  const ByteView bytes = view(message);
-  return {bytes.begin(), bytes.end()};
+Body body_of(zmq::message_t message) {
+  const auto owner = std::make_shared<const zmq::message_t>(std::move(message));
+  return {owner, view(*owner)};
 }
 
 // Sends what can be sent at once. What does not go out (a full queue, a lost connection) is sent
@@ -127,7 +127,7 @@ struct Client::Impl {
     std::uint64_t sequence = 0;
     zmq::message_t body;
     Clock::time_point sent_at;
-    std::optional<Bytes> answer;
+    std::optional<Body> answer;
   };
 
   Impl(Address server, std::string peer, ClientIdentity identity, ClientLimits bounds)
@@ -177,7 +177,7 @@ struct Client::Impl {
                   address, std::chrono::duration<double>(limits.peer_timeout).count());
   }
 
-  void handle(const Frames& frames) {
+  void handle(Frames frames) {
     Header reply;
     try {
       if (frames.size() != kClientFrames) throw Malformed(fmt::format("{} frames", frames.size()));
@@ -200,13 +200,13 @@ struct Client::Impl {
     if (reply.kind != MessageKind::kReply || requests.empty()) return;
     const std::uint64_t place = reply.sequence - requests.front().sequence;  // wraps for old ones
     if (place < requests.size() && !requests[place].answer) {
-      requests[place].answer = bytes_of(frames[1]);
+      requests[place].answer = body_of(std::move(frames[1]));
     }
   }
 
-  std::optional<Bytes> take_answer() {
+  std::optional<Body> take_answer() {
     if (requests.empty() || !requests.front().answer) return std::nullopt;
-    std::optional<Bytes> answer = std::move(requests.front().answer);
+    std::optional<Body> answer = std::move(requests.front().answer);
     requests.pop_front();
     return answer;
   }
@@ -246,16 +246,16 @@ std::uint64_t Client::send(Bytes body) {
   return impl.last_sequence;
 }
 
-std::optional<Bytes> Client::receive(Duration patience) {
+std::optional<Body> Client::receive(Duration patience) {
   Impl& impl = *impl_;
   const Clock::time_point deadline = Clock::now() + patience;
   while (true) {
     for (int i = 0; i < kHandledAtOnce; ++i) {
-      const std::optional<Frames> frames = next_message(impl.socket);
+      std::optional<Frames> frames = next_message(impl.socket);
       if (!frames) break;
-      impl.handle(*frames);
+      impl.handle(*std::move(frames));
     }
-    if (std::optional<Bytes> answer = impl.take_answer()) return answer;
+    if (std::optional<Body> answer = impl.take_answer()) return answer;
     impl.count_silence();
     impl.resend_overdue();
     const Clock::time_point now = Clock::now();
@@ -332,7 +332,7 @@ struct Server::Impl {
   }
 
   // What is new of a message; the rest is dealt with here.
-  std::optional<IncomingRequest> handle(const Frames& frames) {
+  std::optional<IncomingRequest> handle(Frames frames) {
     const std::optional<Header> header = decode_request(frames);
     if (!header) {
       ++dropped;
@@ -357,8 +357,10 @@ struct Server::Impl {
     }
     peer->answers.emplace_back();
     peer->last = header->sequence;
-    return IncomingRequest{
-        {header->role, header->index}, header->incarnation, header->sequence, bytes_of(frames[2])};
+    return IncomingRequest{{header->role, header->index},
+                           header->incarnation,
+                           header->sequence,
+                           body_of(std::move(frames[2]))};
   }
 
   std::optional<Header> decode_request(const Frames& frames) const {
@@ -464,9 +466,9 @@ std::optional<IncomingRequest> Server::receive(Duration patience) {
   const Clock::time_point deadline = Clock::now() + patience;
   while (true) {
     for (int i = 0; i < kHandledAtOnce; ++i) {
-      const std::optional<Frames> frames = next_message(impl_->socket);
+      std::optional<Frames> frames = next_message(impl_->socket);
       if (!frames) break;
-      if (std::optional<IncomingRequest> request = impl_->handle(*frames)) return request;
+      if (auto request = impl_->handle(*std::move(frames))) return request;
     }
     const Clock::time_point now = Clock::now();
     if (now >= deadline || !wait_for_message(impl_->socket, deadline - now)) return std::nullopt;

@@ -10,6 +10,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "proto/codec.h"
 #include "proto/messages.h"
@@ -21,6 +22,20 @@ using Duration = std::chrono::milliseconds;
 // Where a server listens: "ipc://@name" (abstract Unix socket: no file, gone with its process) or
 // "tcp://host:port".
 using Address = std::string;
+
+// The bytes of a message that came in, where they were received. Copies share them.
+class Body {
+ public:
+  Body() = default;
+  // `owner` keeps the bytes alive: shared, since it hides ZeroMQ's type and requests are copied.
+  Body(std::shared_ptr<const void> owner, ByteView bytes)
+      : owner_(std::move(owner)), bytes_(bytes) {}
+  operator ByteView() const { return bytes_; }
+
+ private:
+  std::shared_ptr<const void> owner_;
+  ByteView bytes_;
+};
 
 // Who a client is.
 struct ClientIdentity {
@@ -53,7 +68,7 @@ class Client {
   // The answer to the oldest unanswered request, or nothing when `patience` is over or a signal
   // comes first. Sends again what needs it. Throws Failure when the peer is lost, refuses, or
   // answers nonsense.
-  std::optional<Bytes> receive(Duration patience);
+  std::optional<Body> receive(Duration patience);
 
   std::size_t unanswered() const;
 
@@ -73,7 +88,7 @@ struct IncomingRequest {
   ClientId client;
   std::uint64_t incarnation = 0;
   std::uint64_t sequence = 0;
-  Bytes body;
+  Body body;
 };
 
 struct ServerLimits {

@@ -123,7 +123,7 @@ Batch Store::sample(std::uint32_t count, double importance_exponent) {
   tree_.sample(units_, slots_);
 
   const std::size_t stride = layout_.stride();
-  batch.rows.resize(count * stride);
+  batch.rows.reserve(count * stride);
   batch.keys.resize(count);
   batch.weights.resize(count);
   leaves_.resize(count);
@@ -132,7 +132,7 @@ Batch Store::sample(std::uint32_t count, double importance_exponent) {
   for (std::uint32_t i = 0; i < count; ++i) {
     if (i + kRowsAhead < count) prefetch(slots_[i + kRowsAhead]);
     const std::uint64_t slot = slots_[i];
-    std::memcpy(batch.rows.data() + i * stride, row(slot), stride * sizeof(float));
+    batch.rows.insert(batch.rows.end(), row(slot), row(slot) + stride);
     const std::uint64_t age =
         slot >= oldest_slot ? slot - oldest_slot : slot + capacity_ - oldest_slot;
     batch.keys[i] = oldest + age;

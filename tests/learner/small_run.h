@@ -164,7 +164,7 @@ class SmallRun {
   }
 
   // Nothing at the end of the run.
-  std::optional<Bytes> answer(Client& client) {
+  std::optional<Body> answer(Client& client) {
     while (!end_) {
       if (auto body = client.receive(Duration{5})) return body;
     }

@@ -65,7 +65,7 @@ class ServeTest : public testing::Test {
   }
 
   static ReplayReply receive(Client& client) {
-    const std::optional<Bytes> bytes = client.receive(Duration{20'000});
+    const std::optional<Body> bytes = client.receive(Duration{20'000});
     if (!bytes) throw Failure("no answer");
     return decode_replay_reply(*bytes);
   }
