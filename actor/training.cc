@@ -100,11 +100,11 @@ class Trainer {
     delay(round);
 
     // One chunk may be under way while the next is driven, not two.
-    const Bytes bytes = encode(ReplayRequest(chunk));
+    const Body body = encode(ReplayRequest(chunk));
     time_.charge(TimePart::kTransport);
     if (!drain(replay_)) return false;
     time_.charge(TimePart::kWaitForReplay);
-    replay_.send(bytes);
+    replay_.send(body);
     report(round);
     return true;
   }

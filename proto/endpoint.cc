@@ -73,12 +73,13 @@ std::optional<Frames> next_message(zmq::socket_t& socket) {
   return frames;
 }
 
-// Without a copy: ZeroMQ frees the bytes.
-zmq::message_t message_of(Bytes bytes) {
-  auto owned = std::make_unique<Bytes>(std::move(bytes));
+// Without a copy: ZeroMQ lets go of the bytes.
+zmq::message_t message_of(Body body) {
+  auto owned = std::make_unique<Body>(std::move(body));
+  const ByteView bytes = *owned;
   zmq::message_t message(
-      owned->data(), owned->size(), [](void*, void* hint) { delete static_cast<Bytes*>(hint); },
-      owned.get());
+      const_cast<std::byte*>(bytes.data()), bytes.size(),
+      [](void*, void* hint) { delete static_cast<Body*>(hint); }, owned.get());
   owned.release();
   return message;
 }
@@ -237,7 +238,7 @@ Client::Client(Address server, std::string peer, ClientIdentity identity, Client
                                    limits)) {}
 Client::~Client() = default;
 
-std::uint64_t Client::send(Bytes body) {
+std::uint64_t Client::send(Body body) {
   Impl& impl = *impl_;
   CORRIDOR_CHECK(impl.requests.size() < impl.limits.window, "window {}", impl.limits.window);
   if (impl.requests.empty()) impl.looked_at = Clock::now();
@@ -475,7 +476,7 @@ std::optional<IncomingRequest> Server::receive(Duration patience) {
   }
 }
 
-void Server::reply(const IncomingRequest& to, Bytes body) {
+void Server::reply(const IncomingRequest& to, Body body) {
   impl_->answer(to, {MessageKind::kReply, "", message_of(std::move(body))});
 }
 

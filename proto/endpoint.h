@@ -23,10 +23,15 @@ using Duration = std::chrono::milliseconds;
 // "tcp://host:port".
 using Address = std::string;
 
-// The bytes of a message that came in, where they were received. Copies share them.
+// The bytes of a message where they lie, as they were received or encoded. Copies share them.
 class Body {
  public:
   Body() = default;
+  Body(Bytes bytes) {
+    const auto owner = std::make_shared<const Bytes>(std::move(bytes));
+    bytes_ = *owner;
+    owner_ = owner;
+  }
   // `owner` keeps the bytes alive: shared, since it hides ZeroMQ's type and requests are copied.
   Body(std::shared_ptr<const void> owner, ByteView bytes)
       : owner_(std::move(owner)), bytes_(bytes) {}
@@ -63,7 +68,7 @@ class Client {
   Client& operator=(const Client&) = delete;
 
   // Sends a request; returns its sequence number. At most `window` may be unanswered (CHECK).
-  std::uint64_t send(Bytes body);
+  std::uint64_t send(Body body);
 
   // The answer to the oldest unanswered request, or nothing when `patience` is over or a signal
   // comes first. Sends again what needs it. Throws Failure when the peer is lost, refuses, or
@@ -115,7 +120,7 @@ class Server {
 
   // Answers a request of `receive`, now or later, in any order. An answer to a client that has
   // gone, or has a new incarnation since, is dropped.
-  void reply(const IncomingRequest& to, Bytes body);
+  void reply(const IncomingRequest& to, Body body);
 
   // Tells the client that its request is impossible; it ends with this text (of <= 512 bytes).
   void refuse(const IncomingRequest& request, const std::string& text);

@@ -24,8 +24,14 @@ bool are_finite(const std::vector<float>& values) {
 
 }  // namespace
 
-ReplayService::ReplayService(const RunConfig& config)
+ReplayService::Layouts ReplayService::layouts_of(const RunConfig& config) {
+  return {RowLayout{config.shape(Phase::kMop).observations},
+          RowLayout{config.shape(Phase::kBp).observations}};
+}
+
+ReplayService::ReplayService(const RunConfig& config, const Layouts& layouts)
     : config_(config),
+      layouts_(layouts),
       schedule_(config),
       admission_(static_cast<std::size_t>(config.run.actors)),
       store_(config.phase(phase_), layout(phase_), config.run.seed, phase_, 0),
