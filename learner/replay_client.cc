@@ -12,10 +12,14 @@ namespace {
 constexpr Duration kGlance{1};
 
 template <typename Reply>
-Reply expect(ByteView body) {
+Reply expect(const Body& body) {
   try {
-    ReplayReply reply = decode_replay_reply(body);
-    if (Reply* expected = std::get_if<Reply>(&reply)) return std::move(*expected);
+    if constexpr (std::is_same_v<Reply, ReceivedBatch>) {
+      if (auto batch = decode_batch(body)) return *std::move(batch);
+    } else {
+      ReplayReply reply = decode_replay_reply(body);
+      if (Reply* expected = std::get_if<Reply>(&reply)) return std::move(*expected);
+    }
   } catch (const Malformed& malformed) {
     throw Failure("the replay server's answer is malformed: {}", malformed.what());
   }
@@ -24,7 +28,7 @@ Reply expect(ByteView body) {
 }
 
 // `batch` becomes rows first, first + n, first + 2n ... of `drawn`.
-void every_nth(const Batch& drawn, std::size_t first, std::size_t n, Batch& batch) {
+void every_nth(const ReceivedBatch& drawn, std::size_t first, std::size_t n, Batch& batch) {
   const std::size_t stride = drawn.rows.size() / drawn.keys.size();
   batch.observations = drawn.observations;
   batch.rows.clear();
@@ -87,8 +91,8 @@ std::optional<Opened> ReplayClient::open_block(std::uint64_t round,
   return std::nullopt;
 }
 
-Batch ReplayClient::receive_batch(std::size_t rows) {
-  Batch batch = receive<Batch>();
+ReceivedBatch ReplayClient::receive_batch(std::size_t rows) {
+  ReceivedBatch batch = receive<ReceivedBatch>();
   if (batch.keys.size() != rows || batch.weights.size() != rows) {
     throw Failure("the replay server sent {} keys and {} weights, {} rows were asked for",
                   batch.keys.size(), batch.weights.size(), rows);
@@ -109,7 +113,7 @@ void ReplayClient::run_block(const Block& block,
   };
   for (std::uint32_t i = 0; i < std::min(steps, kDepth); ++i) send(step(i));
   for (std::uint32_t i = 0; i < steps; ++i) {
-    Batch drawn = receive_batch(batches_of(i) * block.batch_size);
+    const ReceivedBatch drawn = receive_batch(batches_of(i) * block.batch_size);
     Step next = step(i + kDepth);
     next.priorities.resize(drawn.keys.size());
     for (std::uint32_t b = 0; b < batches_of(i); ++b) {
@@ -121,7 +125,7 @@ void ReplayClient::run_block(const Block& block,
         next.priorities[b + row * batches_of(i)] = priorities[row];
       }
     }
-    next.keys = std::move(drawn.keys);
+    next.keys.assign(drawn.keys.begin(), drawn.keys.end());
     send(next);
     time_.charge(TimePart::kTransport);
     do_between();

@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "proto/codec.h"
 #include "proto/endpoint.h"
 #include "proto/messages.h"
 #include "proto/time_account.h"
@@ -57,7 +58,7 @@ class ReplayClient {
   std::optional<Body> glance(TimePart waiting);
   template <typename Reply>
   Reply receive();
-  Batch receive_batch(std::size_t rows);
+  ReceivedBatch receive_batch(std::size_t rows);
 
   Client& client_;
   TimeAccount& time_;

@@ -226,15 +226,21 @@ auto decode(ByteView bytes, const Read& read) {
   }
 }
 
+// Where it lies: Cap'n Proto's data begin at whole words.
 template <typename T>
-std::vector<T> values_of(capnp::Data::Reader data, const char* name,
-                         std::size_t bytes_max = kDataBytesMax) {
+std::span<const T> span_of(capnp::Data::Reader data, const char* name,
+                           std::size_t bytes_max = kDataBytesMax) {
   require(data.size() <= bytes_max, "{} has {} bytes, more than {}", name, data.size(), bytes_max);
   require(data.size() % sizeof(T) == 0, "{} has {} bytes, no multiple of {}", name, data.size(),
           sizeof(T));
-  // Cap'n Proto's data begin at whole words.
-  const auto* first = reinterpret_cast<const T*>(data.begin());
-  return {first, first + data.size() / sizeof(T)};
+  return {reinterpret_cast<const T*>(data.begin()), data.size() / sizeof(T)};
+}
+
+template <typename T>
+std::vector<T> values_of(capnp::Data::Reader data, const char* name,
+                         std::size_t bytes_max = kDataBytesMax) {
+  const std::span<const T> values = span_of<T>(data, name, bytes_max);
+  return {values.begin(), values.end()};
 }
 
 std::string string_of(capnp::Text::Reader text, const char* name, std::size_t bytes_max) {
@@ -243,7 +249,7 @@ std::string string_of(capnp::Text::Reader text, const char* name, std::size_t by
 }
 
 // How many whole rows there are.
-std::size_t row_count(const std::vector<float>& rows, std::uint32_t observations) {
+std::size_t row_count(std::span<const float> rows, std::uint32_t observations) {
   require(observations <= kObservationsMax, "{} observations, more than {}", observations,
           kObservationsMax);
   const std::size_t stride = RowLayout{static_cast<int>(observations)}.stride();
@@ -324,6 +330,37 @@ MessageKind kind_of(wire::Header::Kind kind) {
 }
 
 }  // namespace
+
+BatchToFill batch_to_fill(std::uint32_t observations, std::size_t rows) {
+  const std::size_t stride = RowLayout{static_cast<int>(observations)}.stride();
+  const std::size_t row_bytes = rows * stride * sizeof(float);
+  CORRIDOR_CHECK(row_bytes <= kDataBytesMax, "{} bytes of rows", row_bytes);
+  const std::size_t payload_bytes =
+      row_bytes + rows * (sizeof(std::uint64_t) + sizeof(float)) + 2 * sizeof(word);
+  const std::size_t words = kFrameWords + payload_bytes / sizeof(word);
+  // Only what is no row, key or weight need be zeroed for the builder.
+  const auto memory = std::make_shared_for_overwrite<std::uint64_t[]>(words + 1);
+  std::memset(memory.get(), 0, kTableBytes + kFrameWords * sizeof(word));
+  capnp::FlatMessageBuilder message(kj::arrayPtr(reinterpret_cast<word*>(memory.get() + 1), words));
+  auto batch = message.initRoot<wire::ReplayReply>().initBatch();
+  batch.setObservations(observations);
+  const auto part = [&]<typename T>(capnp::Data::Builder data) {
+    std::memset(data.end(), 0, (sizeof(word) - data.size() % sizeof(word)) % sizeof(word));
+    return std::span<T>(reinterpret_cast<T*>(data.begin()), data.size() / sizeof(T));
+  };
+  BatchToFill result;
+  const auto size = [](std::size_t bytes) { return static_cast<unsigned>(bytes); };
+  result.rows = part.operator()<float>(batch.initRows(size(row_bytes)));
+  result.keys = part.operator()<std::uint64_t>(batch.initKeys(size(rows * sizeof(std::uint64_t))));
+  result.weights = part.operator()<float>(batch.initWeights(size(rows * sizeof(float))));
+  const auto segments = message.getSegmentsForOutput();
+  CORRIDOR_CHECK(segments.size() == 1, "{} segments", segments.size());
+  const SegmentTable table{0, static_cast<std::uint32_t>(segments[0].size())};
+  std::memcpy(memory.get(), &table, sizeof table);
+  const auto* first = reinterpret_cast<const std::byte*>(memory.get());
+  result.body = Body(memory, {first, kTableBytes + segments[0].asBytes().size()});
+  return result;
+}
 
 Bytes encode(const Header& header) {
   return build<wire::Header>(header.run_id.size() + header.refusal.size(), [&](auto to) {
@@ -434,6 +471,26 @@ LearnerReply decode_learner_reply(ByteView bytes) {
     }
     unknown_kind("a learner reply", from.which());
   });
+}
+
+std::optional<ReceivedBatch> decode_batch(Body body) {
+  ByteView bytes = body;
+  if (reinterpret_cast<std::uintptr_t>(bytes.data()) % alignof(word) != 0) {
+    body = Body(Bytes(bytes.begin(), bytes.end()));
+    bytes = body;
+  }
+  return decode<wire::ReplayReply>(
+      bytes, [&](wire::ReplayReply::Reader from) -> std::optional<ReceivedBatch> {
+        if (!from.isBatch()) return std::nullopt;
+        const auto batch = from.getBatch();
+        ReceivedBatch result{batch.getObservations(), span_of<float>(batch.getRows(), "rows"),
+                             span_of<std::uint64_t>(batch.getKeys(), "keys"),
+                             span_of<float>(batch.getWeights(), "weights"), body};
+        const std::size_t rows = row_count(result.rows, result.observations);
+        require_count(result.keys.size(), rows, "keys");
+        require_count(result.weights.size(), rows, "weights");
+        return result;
+      });
 }
 
 }  // namespace corridor

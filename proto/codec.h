@@ -2,13 +2,15 @@
 //
 // Decoders take bytes from anywhere: alignment does not matter, nothing larger than a small
 // multiple of the input is allocated, and whatever is not a well-formed message within the limits
-// of proto/wire.capnp (also: a row count that does not fit the row length, a key without a priority)
-// gives Malformed, with the reason in one line. Cost: one copy each way.
+// of proto/wire.capnp (also: a row count that does not fit the row length, a key without a
+// priority) gives Malformed, with the reason in one line. Cost: one copy each way.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <stdexcept>
 
+#include "proto/bytes.h"
 #include "proto/messages.h"
 
 namespace corridor {
@@ -18,8 +20,6 @@ class Malformed : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
-
-using ByteView = std::span<const std::byte>;
 
 Bytes encode(const Header& header);
 Bytes encode(const ReplayRequest& request);
@@ -32,5 +32,27 @@ ReplayRequest decode_replay_request(ByteView bytes);
 ReplayReply decode_replay_reply(ByteView bytes);
 LearnerRequest decode_learner_request(ByteView bytes);
 LearnerReply decode_learner_reply(ByteView bytes);
+
+// The reply that is a Batch, without a copy at either end.
+
+// To be filled in the bytes that will be sent: spans of uninitialised memory in `body`.
+struct BatchToFill {
+  std::span<float> rows;  // whole rows of `observations`
+  std::span<std::uint64_t> keys;
+  std::span<float> weights;
+  Body body;
+};
+BatchToFill batch_to_fill(std::uint32_t observations, std::size_t rows);
+
+// Looked at in the bytes that came: views into `body`.
+struct ReceivedBatch {
+  std::uint32_t observations = 0;
+  std::span<const float> rows;
+  std::span<const std::uint64_t> keys;
+  std::span<const float> weights;
+  Body body;
+};
+// Nothing when the reply is another one. Checked as decode_replay_reply checks it.
+std::optional<ReceivedBatch> decode_batch(Body body);
 
 }  // namespace corridor

@@ -10,8 +10,8 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <utility>
 
+#include "proto/bytes.h"
 #include "proto/codec.h"
 #include "proto/messages.h"
 
@@ -22,25 +22,6 @@ using Duration = std::chrono::milliseconds;
 // Where a server listens: "ipc://@name" (abstract Unix socket: no file, gone with its process) or
 // "tcp://host:port".
 using Address = std::string;
-
-// The bytes of a message where they lie, as they were received or encoded. Copies share them.
-class Body {
- public:
-  Body() = default;
-  Body(Bytes bytes) {
-    const auto owner = std::make_shared<const Bytes>(std::move(bytes));
-    bytes_ = *owner;
-    owner_ = owner;
-  }
-  // `owner` keeps the bytes alive: shared, since it hides ZeroMQ's type and requests are copied.
-  Body(std::shared_ptr<const void> owner, ByteView bytes)
-      : owner_(std::move(owner)), bytes_(bytes) {}
-  operator ByteView() const { return bytes_; }
-
- private:
-  std::shared_ptr<const void> owner_;
-  ByteView bytes_;
-};
 
 // Who a client is.
 struct ClientIdentity {

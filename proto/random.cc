@@ -12,20 +12,43 @@ constexpr std::uint64_t mix(std::uint64_t value) {
 
 constexpr std::uint64_t kGolden = 0x9e3779b97f4a7c15ULL;
 
+// Absorbing one index at a time keeps (1, 2) and (2, 1), and (1) and (1, 0), apart.
+constexpr std::uint64_t absorb(std::uint64_t state, std::uint64_t index) {
+  return mix((state ^ mix(index + kGolden)) + kGolden);
+}
+
+std::uint64_t begin(std::uint64_t seed, Purpose purpose,
+                    std::initializer_list<std::uint64_t> indices) {
+  std::uint64_t state = mix(seed + kGolden);
+  state = mix((state ^ static_cast<std::uint64_t>(purpose)) + kGolden);
+  for (const std::uint64_t index : indices) state = absorb(state, index);
+  return state;
+}
+
+constexpr std::uint64_t finish(std::uint64_t state, std::uint64_t indices) {
+  return mix(state + kGolden * (indices + 1));
+}
+
+constexpr double unit_of(std::uint64_t bits) { return static_cast<double>(bits >> 11) * 0x1.0p-53; }
+
 }  // namespace
 
 std::uint64_t random_bits(std::uint64_t seed, Purpose purpose,
                           std::initializer_list<std::uint64_t> indices) {
-  std::uint64_t state = mix(seed + kGolden);
-  state = mix((state ^ static_cast<std::uint64_t>(purpose)) + kGolden);
-  // Absorbing one index at a time keeps (1, 2) and (2, 1), and (1) and (1, 0), apart.
-  for (const std::uint64_t index : indices) state = mix((state ^ mix(index + kGolden)) + kGolden);
-  return mix(state + kGolden * (indices.size() + 1));
+  return finish(begin(seed, purpose, indices), indices.size());
 }
 
 double random_unit(std::uint64_t seed, Purpose purpose,
                    std::initializer_list<std::uint64_t> indices) {
-  return static_cast<double>(random_bits(seed, purpose, indices) >> 11) * 0x1.0p-53;
+  return unit_of(random_bits(seed, purpose, indices));
+}
+
+RandomSequence::RandomSequence(std::uint64_t seed, Purpose purpose,
+                               std::initializer_list<std::uint64_t> first_indices)
+    : state_(begin(seed, purpose, first_indices)), indices_(first_indices.size() + 1) {}
+
+double RandomSequence::unit(std::uint64_t index) const {
+  return unit_of(finish(absorb(state_, index), indices_));
 }
 
 std::uint64_t random_below(std::uint64_t bound, std::uint64_t seed, Purpose purpose,

@@ -1,8 +1,8 @@
 #include "replay/replay_service.h"
 
-#include <algorithm>
 #include <cmath>
 
+#include "proto/codec.h"
 #include "proto/failure.h"
 #include "proto/tensor_file.h"
 
@@ -15,11 +15,6 @@ constexpr std::size_t kBatchBytesMax = 64 * 1024 * 1024;  // what proto/codec.h 
 template <typename... Args>
 Refused refused(fmt::format_string<Args...> format, Args&&... args) {
   return {fmt::format(format, std::forward<Args>(args)...)};
-}
-
-bool are_finite(const std::vector<float>& values) {
-  return std::all_of(values.begin(), values.end(),
-                     [](float value) { return std::isfinite(value); });
 }
 
 }  // namespace
@@ -139,7 +134,10 @@ Outcome ReplayService::answer(ClientId, const Step& request) {
     return refused("{} rows wanted, more than a message holds", request.count);
   }
   store_.update(request.keys, request.priorities);
-  return store_.sample(request.count, request.importance_exponent);
+  const BatchToFill batch =
+      batch_to_fill(static_cast<std::uint32_t>(store_.layout().observations), request.count);
+  store_.sample(request.importance_exponent, {batch.rows, batch.keys, batch.weights});
+  return EncodedBatch{batch.body};
 }
 
 Outcome ReplayService::answer(ClientId, const Save& request) {

@@ -33,7 +33,12 @@ struct Refused {
 // The request, an OpenBlock, is answered by a later `try_open`.
 struct Waiting {};
 
-using Outcome = std::variant<ReplayReply, Refused, Waiting>;
+// The answer to a Step: a Batch, encoded where its rows were gathered.
+struct EncodedBatch {
+  Body body;
+};
+
+using Outcome = std::variant<ReplayReply, EncodedBatch, Refused, Waiting>;
 
 class ReplayService {
  public:

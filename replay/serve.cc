@@ -52,6 +52,8 @@ class Loop {
       time_.charge(work);
       if (const auto* reply = std::get_if<ReplayReply>(&outcome)) {
         server_.reply(request, encode(*reply));
+      } else if (const auto* batch = std::get_if<EncodedBatch>(&outcome)) {
+        server_.reply(request, batch->body);
       } else if (const auto* refusal = std::get_if<Refused>(&outcome)) {
         spdlog::warn("refused {} {}: {}", request.client.role == Role::kActor ? "actor" : "learner",
                      request.client.index, refusal->text);

@@ -3,6 +3,7 @@
 #include <sys/mman.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstring>
 #include <new>
@@ -15,7 +16,7 @@ namespace corridor::replay {
 namespace {
 
 // A row is asked for so many rows before it is copied: memory answers about so late.
-constexpr std::uint32_t kRowsAhead = 8;
+constexpr std::size_t kRowsAhead = 8;
 constexpr std::size_t kFloatsPerCacheLine = 16;
 
 std::uint64_t number(const TensorFile& file, const std::string& tensor, const std::string& name) {
@@ -29,9 +30,22 @@ std::uint64_t number(const TensorFile& file, const std::string& tensor, const st
 
 }  // namespace
 
+// Without an early end, so that the loops are vector instructions: bits of a float that is not
+// finite have all of the exponent's set.
+bool are_finite(std::span<const float> values) {
+  constexpr std::uint32_t kExponent = 0x7f800000;
+  std::uint32_t bad = 0;
+  for (const float value : values) {
+    bad |=
+        static_cast<std::uint32_t>((std::bit_cast<std::uint32_t>(value) & kExponent) == kExponent);
+  }
+  return bad == 0;
+}
+
 bool are_priorities(std::span<const float> values) {
-  return std::all_of(values.begin(), values.end(),
-                     [](float value) { return std::isfinite(value) && value >= 0.0F; });
+  std::uint32_t bad = 0;
+  for (const float value : values) bad |= static_cast<std::uint32_t>(value < 0.0F);
+  return bad == 0 && are_finite(values);
 }
 
 Store::Store(const DqnSettings& settings, RowLayout layout, std::uint64_t seed, Phase phase,
@@ -40,8 +54,7 @@ Store::Store(const DqnSettings& settings, RowLayout layout, std::uint64_t seed, 
       priority_exponent_(static_cast<float>(settings.priority_exponent)),
       priority_offset_(static_cast<float>(settings.priority_offset)),
       layout_(layout),
-      seed_(seed),
-      phase_(phase),
+      draws_(seed, Purpose::kReplaySampling, {static_cast<std::uint64_t>(phase)}),
       first_key_(first_key),
       next_key_(first_key),
       rows_(uninitialised(capacity_ * layout.stride())),
@@ -108,41 +121,37 @@ void Store::update(std::span<const std::uint64_t> keys, std::span<const float> p
   set_leaves(fresh_);
 }
 
-Batch Store::sample(std::uint32_t count, double importance_exponent) {
-  Batch batch;
-  batch.observations = static_cast<std::uint32_t>(layout_.observations);
-  if (count == 0) return batch;
+void Store::sample(double importance_exponent, const Drawn& into) {
+  const std::size_t count = into.keys.size();
+  const std::size_t stride = layout_.stride();
+  CORRIDOR_CHECK(into.rows.size() == count * stride && into.weights.size() == count,
+                 "room for {} floats, {} keys, {} weights", into.rows.size(), count,
+                 into.weights.size());
+  if (count == 0) return;
 
   units_.resize(count);
-  for (std::uint32_t i = 0; i < count; ++i) {
-    const double unit = random_unit(seed_, Purpose::kReplaySampling,
-                                    {static_cast<std::uint64_t>(phase_), sampled_++});
-    units_[i] = (i + unit) / count;
+  for (std::size_t i = 0; i < count; ++i) {
+    units_[i] = (static_cast<double>(i) + draws_.unit(sampled_++)) / static_cast<double>(count);
   }
   slots_.resize(count);
   tree_.sample(units_, slots_);
 
-  const std::size_t stride = layout_.stride();
-  batch.rows.reserve(count * stride);
-  batch.keys.resize(count);
-  batch.weights.resize(count);
   leaves_.resize(count);
   const std::uint64_t oldest = oldest_key();
   const std::uint64_t oldest_slot = oldest % capacity_;
-  for (std::uint32_t i = 0; i < count; ++i) {
+  for (std::size_t i = 0; i < count; ++i) {
     if (i + kRowsAhead < count) prefetch(slots_[i + kRowsAhead]);
     const std::uint64_t slot = slots_[i];
-    batch.rows.insert(batch.rows.end(), row(slot), row(slot) + stride);
+    std::memcpy(into.rows.data() + i * stride, row(slot), stride * sizeof(float));
     const std::uint64_t age =
         slot >= oldest_slot ? slot - oldest_slot : slot + capacity_ - oldest_slot;
-    batch.keys[i] = oldest + age;
+    into.keys[i] = oldest + age;
     leaves_[i] = tree_.value(slot);
   }
   // The least probable row has the largest weight, and size and total cancel out in the quotient.
   const float smallest = *std::min_element(leaves_.begin(), leaves_.end());
   for (float& leaf : leaves_) leaf = smallest / leaf;
-  power(leaves_, static_cast<float>(importance_exponent), batch.weights);
-  return batch;
+  power(leaves_, static_cast<float>(importance_exponent), into.weights);
 }
 
 void Store::prefetch(std::uint64_t slot) const {

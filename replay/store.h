@@ -17,7 +17,7 @@
 #include <string>
 #include <vector>
 
-#include "proto/messages.h"
+#include "proto/random.h"
 #include "proto/settings.h"
 #include "proto/tensor_file.h"
 #include "proto/transition.h"
@@ -25,6 +25,7 @@
 
 namespace corridor::replay {
 
+bool are_finite(std::span<const float> values);
 // Whether all are |TD errors|: finite and >= 0.
 bool are_priorities(std::span<const float> values);
 
@@ -48,10 +49,17 @@ class Store {
   // of replaced rows are dropped and counted; of a key named twice the last one stays.
   void update(std::span<const std::uint64_t> keys, std::span<const float> priorities);
 
-  // Draws `count` rows, one from each of `count` equal strata of the priorities' sum, and weighs
-  // them by (size * probability)^-importance_exponent, divided by the batch's largest weight.
-  // size() >= 1 unless count is 0; importance_exponent finite and >= 0.
-  Batch sample(std::uint32_t count, double importance_exponent);
+  // What `sample` draws into, all of as many rows.
+  struct Drawn {
+    std::span<float> rows;  // [row, stride]
+    std::span<std::uint64_t> keys;
+    std::span<float> weights;
+  };
+  // Draws as many rows as there is room for, one from each of so many equal strata of the
+  // priorities' sum, and weighs them by (size * probability)^-importance_exponent, divided by the
+  // batch's largest weight. size() >= 1 unless there is no room; importance_exponent finite and
+  // >= 0.
+  void sample(double importance_exponent, const Drawn& into);
 
   // Everything but what the constructor is given: "rows" [size, stride] and "leaves" [size] from
   // the oldest key on, "first_key", "next_key", "sampled", "stale_priorities".
@@ -74,8 +82,7 @@ class Store {
   float priority_exponent_;
   float priority_offset_;
   RowLayout layout_;
-  std::uint64_t seed_;
-  Phase phase_;
+  RandomSequence draws_;
 
   std::uint64_t first_key_;
   std::uint64_t next_key_;

@@ -40,6 +40,16 @@ Store full_store(int observations, std::int64_t capacity = kRows) {
   return store;
 }
 
+// Room for a batch.
+struct Room {
+  explicit Room(int observations)
+      : rows(kBatch * RowLayout{observations}.stride()), keys(kBatch), weights(kBatch) {}
+  void draw(Store& store) { store.sample(0.4, {rows, keys, weights}); }
+  std::vector<float> rows;
+  std::vector<std::uint64_t> keys;
+  std::vector<float> weights;
+};
+
 void count_rows(benchmark::State& state, std::size_t rows_each) {
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(rows_each));
 }
@@ -58,7 +68,8 @@ void rings(benchmark::internal::Benchmark* benchmark) {
 
 void StoreSample(benchmark::State& state) {
   Store store = full_store(static_cast<int>(state.range(0)), state.range(1));
-  for (auto _ : state) benchmark::DoNotOptimize(store.sample(kBatch, 0.4));
+  Room room(static_cast<int>(state.range(0)));
+  for (auto _ : state) room.draw(store);
   count_rows(state, kBatch);
 }
 BENCHMARK(StoreSample)->Apply(rings);
@@ -66,9 +77,10 @@ BENCHMARK(StoreSample)->Apply(rings);
 // Of the rows that were drawn just before, as a learner returns them.
 void StoreUpdate(benchmark::State& state) {
   Store store = full_store(static_cast<int>(state.range(0)), state.range(1));
-  const std::vector<std::uint64_t> keys = store.sample(kBatch, 0.4).keys;
+  Room room(static_cast<int>(state.range(0)));
+  room.draw(store);
   const std::vector<float> fresh = priorities(kBatch, 7);
-  for (auto _ : state) store.update(keys, fresh);
+  for (auto _ : state) store.update(room.keys, fresh);
   count_rows(state, kBatch);
 }
 BENCHMARK(StoreUpdate)->Apply(rings);

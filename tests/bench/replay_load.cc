@@ -215,11 +215,11 @@ void play_learner(const Load& load, const Address& address, Counters& counters) 
       const Body body = answer(client);
       Body reply = next;
       if (!load.floor) {
-        Batch batch = std::get<Batch>(decode_replay_reply(body));
+        const ReceivedBatch batch = decode_batch(body).value();
         float sum = 0.0F;
         for (const float value : batch.rows) sum += value;
         seen = seen + sum;
-        step.keys = std::move(batch.keys);
+        step.keys.assign(batch.keys.begin(), batch.keys.end());
         step.count = sent < steps ? kRowsPerStep : 0;
         reply = encode(ReplayRequest(step));
       }

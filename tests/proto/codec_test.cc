@@ -21,6 +21,12 @@ Insert insert_of(std::size_t rows) {
   return {7, 2, floats(7 * rows), floats(rows), {3, {1, 2, 250}}};
 }
 
+Batch batch_of(std::size_t rows) {
+  Batch batch{2, floats(7 * rows), {}, floats(rows)};
+  for (std::size_t i = 0; i < rows; ++i) batch.keys.push_back(1000 + i);
+  return batch;
+}
+
 std::vector<Header> headers() {
   Header refused{kProtocolVersion,      std::string(32, 'a'), Role::kLearner, 9, 1ULL << 60, 12,
                  MessageKind::kRefused, "no: \"x\""};
@@ -161,6 +167,43 @@ void expect_malformed(const Value& value, const std::string& reason) {
   } catch (const Malformed& error) {
     EXPECT_NE(std::string(error.what()).find(reason), std::string::npos) << error.what();
   }
+}
+
+TEST(Codec, ABatchFilledInItsMessageIsTheBatchThatWouldHaveBeenEncoded) {
+  for (const std::size_t rows : {0, 1, 3, 1000}) {
+    const Batch batch = batch_of(rows);
+    const BatchToFill place = batch_to_fill(batch.observations, rows);
+    ASSERT_EQ(place.rows.size(), batch.rows.size());
+    std::copy(batch.rows.begin(), batch.rows.end(), place.rows.begin());
+    std::copy(batch.keys.begin(), batch.keys.end(), place.keys.begin());
+    std::copy(batch.weights.begin(), batch.weights.end(), place.weights.begin());
+    const Bytes encoded = encode(ReplayReply(batch));
+    const ByteView filled = place.body;
+    EXPECT_TRUE(std::equal(filled.begin(), filled.end(), encoded.begin(), encoded.end()));
+
+    // Looked at in place, from aligned bytes and others.
+    for (const std::size_t offset : {0, 1}) {
+      Bytes moved(offset);
+      moved.insert(moved.end(), encoded.begin(), encoded.end());
+      const auto owner = std::make_shared<const Bytes>(moved);
+      const auto received = decode_batch(Body(owner, ByteView(*owner).subspan(offset)));
+      ASSERT_TRUE(received.has_value());
+      EXPECT_EQ(received->observations, batch.observations);
+      EXPECT_TRUE(std::ranges::equal(received->rows, batch.rows));
+      EXPECT_TRUE(std::ranges::equal(received->keys, batch.keys));
+      EXPECT_TRUE(std::ranges::equal(received->weights, batch.weights));
+    }
+  }
+}
+
+TEST(Codec, AnotherReplyIsNoBatchAndADamagedOneIsMalformed) {
+  EXPECT_FALSE(decode_batch(encode(ReplayReply(Inserted{}))).has_value());
+  Batch batch = batch_of(3);
+  batch.keys.pop_back();
+  EXPECT_THROW(decode_batch(encode(ReplayReply(batch))), Malformed);
+  Bytes torn = encode(ReplayReply(batch_of(3)));
+  torn.resize(torn.size() - 8);
+  EXPECT_THROW(decode_batch(torn), Malformed);
 }
 
 TEST(Codec, RowsMustBeWhole) {

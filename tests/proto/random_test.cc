@@ -105,6 +105,15 @@ TEST(Random, IndicesOfAnotherOrderOrNumberAreOtherDraws) {
   EXPECT_EQ(seen.size(), draws);
 }
 
+TEST(Random, ASequenceHasTheNumbersOfItsIndices) {
+  const RandomSequence sequence(7, Purpose::kTraffic, {3, 4});
+  const RandomSequence short_one(7, Purpose::kTraffic, {});
+  for (std::uint64_t i = 0; i < 100; ++i) {
+    EXPECT_EQ(sequence.unit(i), random_unit(7, Purpose::kTraffic, {3, 4, i}));
+    EXPECT_EQ(short_one.unit(i), random_unit(7, Purpose::kTraffic, {i}));
+  }
+}
+
 TEST(Random, BelowStaysBelow) {
   for (const std::uint64_t bound : {1ULL, 2ULL, 3ULL, 1ULL << 63, ~0ULL}) {
     for (std::uint64_t i = 0; i < 1000; ++i) {

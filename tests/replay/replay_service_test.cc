@@ -32,6 +32,9 @@ Reply reply_of(const Outcome& outcome) {
     ADD_FAILURE() << "refused: " << refused->text;
     return {};
   }
+  if (const auto* batch = std::get_if<EncodedBatch>(&outcome)) {
+    return std::get<Reply>(decode_replay_reply(batch->body));
+  }
   const auto* reply = std::get_if<ReplayReply>(&outcome);
   if (reply == nullptr || !std::holds_alternative<Reply>(*reply)) {
     ADD_FAILURE() << "another reply";

@@ -114,7 +114,9 @@ TEST_F(ServeTest, ClientsGetWhatTheServiceAloneWouldAnswer) {
     const Step step{{}, {}, 8, 0.4};
     for (std::uint32_t i = 0; i < steps; ++i) learner.send(encode(ReplayRequest{step}));
     for (std::uint32_t i = 0; i < steps; ++i) {
-      ASSERT_EQ(receive(learner), std::get<ReplayReply>(alone.handle({Role::kLearner, 0}, step)));
+      ASSERT_EQ(receive(learner),
+                decode_replay_reply(
+                    std::get<EncodedBatch>(alone.handle({Role::kLearner, 0}, step)).body));
     }
   }
 

@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "proto/failure.h"
+#include "proto/messages.h"
 #include "proto/random.h"
 #include "tests/replay/chi_square.h"
 
@@ -42,6 +43,16 @@ void insert(Store& store, const std::vector<float>& priorities, float first = 0.
   store.insert(rows, priorities);
 }
 
+Batch sample(Store& store, std::size_t count, double importance_exponent) {
+  Batch batch;
+  batch.observations = static_cast<std::uint32_t>(kLayout.observations);
+  batch.rows.resize(count * kLayout.stride());
+  batch.keys.resize(count);
+  batch.weights.resize(count);
+  store.sample(importance_exponent, {batch.rows, batch.keys, batch.weights});
+  return batch;
+}
+
 // |TD errors| from 1e-6 to 1e3, log-uniform.
 std::vector<float> skewed_priorities(std::size_t count) {
   std::vector<float> result;
@@ -65,7 +76,7 @@ TEST(StoreTest, StratifiedDrawsFollowSkewedPriorities) {
 
     std::vector<std::vector<std::size_t>> counts(kStrata, std::vector<std::size_t>(kRows));
     for (int batch = 0; batch < kBatches; ++batch) {
-      const std::vector<std::uint64_t> keys = store.sample(kStrata, 0.4).keys;
+      const std::vector<std::uint64_t> keys = sample(store, kStrata, 0.4).keys;
       for (std::uint32_t stratum = 0; stratum < kStrata; ++stratum)
         ++counts[stratum][keys[stratum]];
     }
@@ -103,7 +114,7 @@ TEST(StoreTest, WeightsFollowTheFormula) {
   const double total = std::accumulate(leaves.begin(), leaves.end(), 0.0);
 
   for (const double beta : {0.0, 0.4, 1.0}) {
-    const Batch batch = store.sample(64, beta);
+    const Batch batch = sample(store, 64, beta);
     std::vector<double> weights;
     for (const std::uint64_t key : batch.keys) {
       weights.push_back(std::pow(kRows * leaves[key] / total, -beta));
@@ -126,7 +137,7 @@ TEST(StoreTest, ABatchCarriesTheRowsOfItsKeysOverManyWraps) {
     ASSERT_EQ(store.inserted(), inserted);
     ASSERT_EQ(store.size(), std::min<std::uint64_t>(inserted, 100));
     if (store.size() == 0) continue;
-    const Batch batch = store.sample(50, 0.4);
+    const Batch batch = sample(store, 50, 0.4);
     for (std::size_t i = 0; i < 50; ++i) {
       ASSERT_GE(batch.keys[i] + 100, store.next_key());
       ASSERT_LT(batch.keys[i], store.next_key());
@@ -145,7 +156,7 @@ TEST(StoreTest, ALatePriorityNeverReachesTheSlotsNextTenant) {
   store.update(std::vector<std::uint64_t>{0, 1, 2}, std::vector<float>{1e30F, 1e30F, 3.0F});
   EXPECT_EQ(store.stale_priorities(), 2U);
   // Shares in the order of the slots: keys 4, 5, 2 (thrice), 3.
-  EXPECT_THAT(store.sample(6, 0.4).keys, testing::ElementsAre(4, 5, 2, 2, 2, 3));
+  EXPECT_THAT(sample(store, 6, 0.4).keys, testing::ElementsAre(4, 5, 2, 2, 2, 3));
   insert(store, {1}, 6.0F);
   store.update(std::vector<std::uint64_t>{3, 2}, std::vector<float>{1.0F, 1.0F});
   EXPECT_EQ(store.stale_priorities(), 3U);
@@ -156,21 +167,21 @@ TEST(StoreTest, KeysOfAnEarlierPhaseAreStale) {
   insert(store, {1, 1});
   store.update(std::vector<std::uint64_t>{999, 5}, std::vector<float>{9.0F, 9.0F});
   EXPECT_EQ(store.stale_priorities(), 2U);
-  EXPECT_THAT(store.sample(2, 0.4).keys, testing::UnorderedElementsAre(1000, 1001));
+  EXPECT_THAT(sample(store, 2, 0.4).keys, testing::UnorderedElementsAre(1000, 1001));
 }
 
 TEST(StoreTest, ADrawOfNothingIsEmptyAndCostsNoNumbers) {
   Store store = make_store(settings(8));
-  EXPECT_THAT(store.sample(0, 0.4).rows, IsEmpty());
+  EXPECT_THAT(sample(store, 0, 0.4).rows, IsEmpty());
   insert(store, {1});
-  store.sample(0, 0.4);
+  sample(store, 0, 0.4);
   EXPECT_EQ(store.sampled(), 0U);
 }
 
 TEST(StoreTest, ARestoredStoreDrawsTheSameBits) {
   Store store = make_store(settings(64, 0.6, 1e-3), 500);
   for (int chunk = 0; chunk < 5; ++chunk) insert(store, skewed_priorities(30), 30.0F * chunk);
-  const Batch batch = store.sample(16, 0.5);
+  const Batch batch = sample(store, 16, 0.5);
   store.update(batch.keys, skewed_priorities(16));
   TensorFile file;
   store.save(file);
@@ -181,8 +192,8 @@ TEST(StoreTest, ARestoredStoreDrawsTheSameBits) {
   restored.save(again);
   EXPECT_EQ(again, file);
   for (int step = 0; step < 50; ++step) {
-    const Batch expected = store.sample(16, 0.5);
-    ASSERT_EQ(restored.sample(16, 0.5), expected);
+    const Batch expected = sample(store, 16, 0.5);
+    ASSERT_EQ(sample(restored, 16, 0.5), expected);
     store.update(expected.keys, skewed_priorities(16));
     restored.update(expected.keys, skewed_priorities(16));
     insert(store, skewed_priorities(7));
