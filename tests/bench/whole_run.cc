@@ -12,7 +12,9 @@
 #include "cluster/progress.h"
 #include "proto/failure.h"
 #include "proto/program.h"
+#include "proto/run_config.h"
 #include "proto/run_directory.h"
+#include "tests/bench/td_floor.h"
 #include "tests/support/command.h"
 #include "tests/support/temporary_directory.h"
 
@@ -42,6 +44,7 @@ double value(const MetricsLine& line, const char* name) {
 struct PhaseTime {
   double wall_s = 0.0;
   double steps = 0.0;
+  double updates = 0.0;
   CoreTime core_s;  // by "process part"
 };
 
@@ -58,6 +61,7 @@ std::map<std::string, PhaseTime> phases_of(const RunDirectory& run, int actors) 
       if (process != "learner") continue;
       phase.wall_s += wall_s;
       phase.steps = static_cast<double>(line.step);
+      phase.updates = value(line, "charts/updates");
     }
   };
   for (int i = 0; i < actors; ++i) add(fmt::format("actor-{}", i), "actor");
@@ -66,14 +70,18 @@ std::map<std::string, PhaseTime> phases_of(const RunDirectory& run, int actors) 
   return phases;
 }
 
-// What no implementation could leave out: SUMO's own work and the networks'.
+// SUMO's own work and the networks'.
 bool is_floor(const std::string& part) {
   return part == "actor simulate" || part == "actor traffic" || part == "actor infer" ||
          part == "learner update";
 }
 
-void print(const std::map<std::string, PhaseTime>& phases, int cores) {
-  for (const auto& [name, phase] : phases) {
+// Parts are shares of the processes' wall time: one in which the scheduler takes the core away
+// looks larger than it is, the learner's transport above all, which wakes the server.
+void print(const std::map<std::string, PhaseTime>& phases, const RunConfig& config, int cores) {
+  for (const Phase which : {Phase::kMop, Phase::kBp}) {
+    const std::string name = phase_name(which);
+    const PhaseTime& phase = phases.at(name);
     const double all_s = phase.wall_s * cores;
     std::printf("\n%s: %.0f steps in %.1f s, %.0f steps/s; %d cores x wall time = %.1f core-s\n",
                 name.c_str(), phase.steps, phase.wall_s, phase.steps / phase.wall_s, cores, all_s);
@@ -98,6 +106,11 @@ void print(const std::map<std::string, PhaseTime>& phases, int cores) {
     const double sumo_s = of_actor("simulate") + of_actor("traffic");
     const double agent_s = of_actor("world") + of_actor("plan") + of_actor("infer");
     std::printf("  SUMO and networks of the busy time: %.1f %%\n", 100.0 * floor_s / busy_s);
+    const double step_us = 1e6 * phase.core_s.at("learner update") / phase.updates;
+    const double bare_us = TdFloor::step_us(config.network(which), config.phase(which).batch_size);
+    std::printf(
+        "  a training step: %.1f us, %.2f of its bare arithmetic alone on a core (%.1f us)\n",
+        step_us, step_us / bare_us, bare_us);
     std::printf("  environment with agent: %.2f of SUMO's own step rate, %.2f with loading\n",
                 sumo_s / (sumo_s + agent_s), sumo_s / (sumo_s + agent_s + of_actor("load")));
   }
@@ -117,7 +130,9 @@ int run(const std::string& scenario, int actors, const std::string& seed,
   if (trained.status != 0) throw Failure("corridor train failed: {}", trained.output);
   std::printf("%s with %d actors: %.1f s from command to prompt\n", scenario.c_str(), actors,
               trained.seconds);
-  print(phases_of(RunDirectory::open(root), actors), cluster::available_cores());
+  const RunDirectory directory = RunDirectory::open(root);
+  print(phases_of(directory, actors), load_run_config(directory.config()),
+        cluster::available_cores());
 
   // An actor that drives a single step, from exec to its end.
   for (int i = 0; i < 3; ++i) {
