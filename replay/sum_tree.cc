@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "proto/failure.h"
 
@@ -15,13 +16,28 @@ double sum_of_group(const T* child) {
   return (static_cast<double>(child[0]) + child[1]) + (static_cast<double>(child[2]) + child[3]);
 }
 
-// In halves, which the compiler adds side by side.
+// Two numbers side by side, added by one instruction on every processor of 64 bits.
+using Pair = double __attribute__((vector_size(2 * sizeof(double))));
+
+Pair pair_at(const double* from) {
+  Pair pair;
+  std::memcpy(&pair, from, sizeof pair);
+  return pair;
+}
+Pair pair_at(const float* from) {
+  float __attribute__((vector_size(2 * sizeof(float)))) pair;
+  std::memcpy(&pair, from, sizeof pair);
+  return __builtin_convertvector(pair, Pair);
+}
+
 template <typename T>
 double sum_of(const T* child) {
-  double sums[8];
-  for (int i = 0; i < 8; ++i) sums[i] = static_cast<double>(child[i]) + child[i + 8];
-  for (int i = 0; i < 4; ++i) sums[i] += sums[i + 4];
-  return (sums[0] + sums[2]) + (sums[1] + sums[3]);
+  const Pair first_half =
+      (pair_at(child) + pair_at(child + 2)) + (pair_at(child + 4) + pair_at(child + 6));
+  const Pair second_half =
+      (pair_at(child + 8) + pair_at(child + 10)) + (pair_at(child + 12) + pair_at(child + 14));
+  const Pair sum = first_half + second_half;
+  return sum[0] + sum[1];
 }
 
 // Which of four the point lies in, laid end to end; the point then counts from that one's begin.

@@ -1,7 +1,9 @@
 // The replay server's store, in process: a million rows, batches of 512.
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <numeric>
 #include <vector>
 
@@ -73,6 +75,32 @@ void StoreSample(benchmark::State& state) {
   count_rows(state, kBatch);
 }
 BENCHMARK(StoreSample)->Apply(rings);
+
+// What memory alone takes for a batch's rows, wherever they are.
+void Gather(benchmark::State& state) {
+  const std::size_t stride = RowLayout{static_cast<int>(state.range(0))}.stride();
+  const auto count = static_cast<std::uint64_t>(state.range(1));
+  std::vector<float> ring(count * stride, 0.5F), batch(kBatch * stride);
+  std::vector<std::uint64_t> slots(kBatch);
+  std::uint64_t draw = 0;
+  for (auto _ : state) {
+    state.PauseTiming();
+    for (auto& slot : slots) slot = random_below(count, 1, Purpose::kBootstrap, {draw++});
+    std::sort(slots.begin(), slots.end());
+    state.ResumeTiming();
+    for (std::size_t i = 0; i < kBatch; ++i) {
+      if (i + 8 < kBatch) {
+        const float* row = ring.data() + slots[i + 8] * stride;
+        for (std::size_t j = 0; j < stride; j += 16) __builtin_prefetch(row + j);
+      }
+      std::memcpy(batch.data() + i * stride, ring.data() + slots[i] * stride,
+                  stride * sizeof(float));
+    }
+    benchmark::DoNotOptimize(batch.data());
+  }
+  count_rows(state, kBatch);
+}
+BENCHMARK(Gather)->Apply(rings);
 
 // Of the rows that were drawn just before, as a learner returns them.
 void StoreUpdate(benchmark::State& state) {
