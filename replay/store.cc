@@ -6,7 +6,6 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
-#include <new>
 
 #include "proto/failure.h"
 #include "proto/random.h"
@@ -68,7 +67,9 @@ std::unique_ptr<float[], Store::Free> Store::uninitialised(std::size_t floats) {
   constexpr std::size_t kHugePage = 2 * 1024 * 1024;
   const std::size_t bytes = (floats * sizeof(float) + kHugePage - 1) / kHugePage * kHugePage;
   auto* memory = static_cast<float*>(std::aligned_alloc(kHugePage, bytes));
-  if (memory == nullptr) throw std::bad_alloc();
+  if (memory == nullptr) {
+    throw Failure("no memory for a replay of {} MB: lower [mop] and [bp] capacity", bytes >> 20);
+  }
   madvise(memory, bytes, MADV_HUGEPAGE);
   return std::unique_ptr<float[], Free>(memory);
 }

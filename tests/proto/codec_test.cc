@@ -202,7 +202,7 @@ TEST(Codec, AnotherReplyIsNoBatchAndADamagedOneIsMalformed) {
   batch.keys.pop_back();
   EXPECT_THROW(decode_batch(encode(ReplayReply(batch))), Malformed);
   Bytes torn = encode(ReplayReply(batch_of(3)));
-  torn.resize(torn.size() - 8);
+  torn.erase(torn.end() - 8, torn.end());
   EXPECT_THROW(decode_batch(torn), Malformed);
 }
 
