@@ -76,7 +76,7 @@ struct ReplayRequest {
       keys @7 :Data;            # uint64, as they came in an earlier batch; may be empty
       priorities @8 :Data;      # float32 |TD error|, one a key; finite, >= 0
       count @9 :UInt32;         # rows to draw, <= 65536; 0: none
-      importanceExponent @10 :Float64;  # beta, finite
+      importanceExponent @10 :Float64;  # beta, in [0, 1]
     }
 
     save :group {

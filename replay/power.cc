@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 
@@ -47,7 +48,8 @@ inline float exp2_of(float value) {
 }  // namespace
 
 void power(std::span<const float> bases, float exponent, std::span<float> out) {
-  CORRIDOR_CHECK(bases.size() == out.size(), "{} bases, {} powers", bases.size(), out.size());
+  CORRIDOR_CHECK(bases.size() == out.size() && std::abs(exponent) <= 8.0F,
+                 "{} bases, {} powers, exponent {}", bases.size(), out.size(), exponent);
   const float* from = bases.data();
   float* to = out.data();
 #pragma GCC ivdep

@@ -5,9 +5,9 @@
 
 namespace corridor::replay {
 
-// out[i] = bases[i]^exponent, at most 1e30. Bases are normal and > 0, |exponent| <= 8. The relative
-// error is below 1e-5. The same bits on every processor: only additions, multiplications and
-// divisions, in one order.
+// out[i] = bases[i]^exponent, at most 1e30. Bases are normal and > 0, |exponent| <= 8 (CHECK). The
+// relative error is below 1e-5. The same bits on every processor: only additions, multiplications
+// and divisions, in one order.
 void power(std::span<const float> bases, float exponent, std::span<float> out);
 
 }  // namespace corridor::replay

@@ -1,6 +1,5 @@
 #include "replay/replay_service.h"
 
-#include <cmath>
 
 #include "proto/codec.h"
 #include "proto/failure.h"
@@ -124,7 +123,7 @@ Outcome ReplayService::answer(ClientId, const Step& request) {
     }
   }
   if (!are_priorities(request.priorities)) return refused("priorities not all finite and >= 0");
-  if (!std::isfinite(request.importance_exponent) || request.importance_exponent < 0.0) {
+  if (!(request.importance_exponent >= 0.0 && request.importance_exponent <= 1.0)) {
     return refused("an importance exponent of {}", request.importance_exponent);
   }
   if (request.count > 0 && store_.size() == 0) {

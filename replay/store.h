@@ -57,8 +57,7 @@ class Store {
   };
   // Draws as many rows as there is room for, one from each of so many equal strata of the
   // priorities' sum, and weighs them by (size * probability)^-importance_exponent, divided by the
-  // batch's largest weight. size() >= 1 unless there is no room; importance_exponent finite and
-  // >= 0.
+  // batch's largest weight. size() >= 1 unless there is no room; importance_exponent in [0, 1].
   void sample(double importance_exponent, const Drawn& into);
 
   // Everything but what the constructor is given: "rows" [size, stride] and "leaves" [size] from

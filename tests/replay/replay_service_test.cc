@@ -289,6 +289,7 @@ TEST_F(ReplayServiceTest, StepsThatMakeNoSenseAreRefusedAndLeaveNoTrace) {
   EXPECT_THAT(refusal({{100}, {1.0F}, UINT32_MAX, 0.4}), HasSubstr("more than a message holds"));
   EXPECT_THAT(refusal({{100}, {1.0F}, 8, nan}), HasSubstr("exponent"));
   EXPECT_THAT(refusal({{100}, {1.0F}, 8, -0.1}), HasSubstr("exponent"));
+  EXPECT_THAT(refusal({{100}, {1.0F}, 8, 1e300}), HasSubstr("exponent"));
   EXPECT_EQ(saved_bytes(service), saved_bytes(untouched));
 }
 
