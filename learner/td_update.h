@@ -22,6 +22,7 @@ class TdUpdate {
   // Throws Failure when the device is not there (check_device).
   TdUpdate(const NetworkShape& shape, const DqnSettings& dqn, const std::string& device,
            const TdState& state);
+
   struct Result {
     double loss = 0.0;              // before the step
     double q_value = 0.0;           // mean Q of the actions taken
@@ -34,9 +35,8 @@ class TdUpdate {
   Result update(const Batch& batch, double learning_rate);
 
   std::uint64_t updates() const { return updates_; }
-  std::vector<float> parameters() const {
-    return networks_->parameters();
-  }  // of the online network
+  // Of the online network.
+  std::vector<float> parameters() const { return networks_->parameters(); }
   TdState state() const { return networks_->state(); }
 
  private:
