@@ -1,5 +1,7 @@
 #include "proto/metrics.h"
 
+#include <sys/resource.h>
+
 #include <chrono>
 #include <nlohmann/json.hpp>
 
@@ -10,6 +12,13 @@ namespace {
 
 double now_s() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+// The largest share of the process that has been in memory.
+double peak_memory_mb() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024.0;
 }
 
 // Whether a process died in the middle of the file's last line.
@@ -31,8 +40,11 @@ MetricsWriter::MetricsWriter(const std::filesystem::path& file) : file_(file), s
 
 void MetricsWriter::write(const char* phase, std::uint64_t round, std::int64_t step,
                           const std::vector<std::pair<std::string, double>>& values) {
-  nlohmann::ordered_json line = {
-      {"phase", phase}, {"round", round}, {"step", step}, {"time_s", now_s() - start_s_}};
+  nlohmann::ordered_json line = {{"phase", phase},
+                                 {"round", round},
+                                 {"step", step},
+                                 {"time_s", now_s() - start_s_},
+                                 {"memory_mb", peak_memory_mb()}};
   for (const auto& [name, value] : values) line[name] = value;  // NaN and infinity become null
   out_ << line.dump() << '\n' << std::flush;
   if (!out_) throw Failure("cannot write metrics to {}: is the disk full?", file_.string());

@@ -15,9 +15,10 @@ class MetricsWriter {
   // Appends. Throws Failure when the file cannot be opened.
   explicit MetricsWriter(const std::filesystem::path& file);
 
-  // {"phase":"MoP","round":7,"step":3584,"time_s":1.25,<name>:<value>,...}. `step` counts the
-  // phase's environment steps of all actors; time_s is seconds since the writer was made and the
-  // only thing in the line that differs between two equal runs (together with time/*, */SPS).
+  // {"phase":"MoP","round":7,"step":3584,"time_s":1.25,"memory_mb":61.5,<name>:<value>,...}. `step`
+  // counts the phase's environment steps of all actors; time_s is seconds since the writer was made,
+  // memory_mb the process's peak resident memory: these, time/* and */SPS are all that differs
+  // between two equal runs.
   // Flushed at once. Throws Failure when the disk is full.
   void write(const char* phase, std::uint64_t round, std::int64_t step,
              const std::vector<std::pair<std::string, double>>& values);

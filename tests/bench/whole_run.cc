@@ -116,6 +116,15 @@ void print(const std::map<std::string, PhaseTime>& phases, const RunConfig& conf
   }
 }
 
+void print_memory(const RunDirectory& run) {
+  std::printf("\npeak resident memory:");
+  for (const char* process : {"actor-0", "learner", "replay"}) {
+    const auto line = cluster::last_metrics_line(run.metrics(process));
+    if (line) std::printf("  %s %.0f MB", process, value(*line, "memory_mb"));
+  }
+  std::printf("\n");
+}
+
 int run(const std::string& scenario, int actors, const std::string& seed,
         const std::vector<std::string>& settings) {
   testing_support::TemporaryDirectory temporary;
@@ -133,6 +142,7 @@ int run(const std::string& scenario, int actors, const std::string& seed,
   const RunDirectory directory = RunDirectory::open(root);
   print(phases_of(directory, actors), load_run_config(directory.config()),
         cluster::available_cores());
+  print_memory(directory);
 
   // An actor that drives a single step, from exec to its end.
   for (int i = 0; i < 3; ++i) {

@@ -35,12 +35,13 @@ TEST_F(Metrics, AreOneObjectALineInTheOrderGiven) {
   const auto line = lines()[0];
   std::vector<std::string> names;
   for (const auto& [name, value] : line.items()) names.push_back(name);
-  EXPECT_THAT(names, testing::ElementsAre("phase", "round", "step", "time_s", "losses/td_loss",
-                                          "charts/SPS"));
+  EXPECT_THAT(names, testing::ElementsAre("phase", "round", "step", "time_s", "memory_mb",
+                                          "losses/td_loss", "charts/SPS"));
   EXPECT_EQ(line["phase"], "MoP");
   EXPECT_EQ(line["round"], 7);
   EXPECT_EQ(line["step"], 3584);
   EXPECT_GE(line["time_s"], 0.0);
+  EXPECT_GT(line["memory_mb"], 0.5);
   EXPECT_EQ(line["losses/td_loss"], 0.1);
 }
 
