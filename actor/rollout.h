@@ -28,8 +28,8 @@ struct RolloutTotals {
 };
 
 // One phase of one actor. What it does is a function of (config, actor, round, the open episode it
-// starts from, the weights). One thread owns it; `config`, `world` and `time` outlive
-// it.
+// starts from, the weights). One thread owns it; `config`, `world` and `time`
+// outlive it.
 class PhaseRollout {
  public:
   // Stands before `next_round` with the open episode of the rounds before: drives it again up to

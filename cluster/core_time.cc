@@ -1,35 +1,30 @@
 #include "cluster/core_time.h"
 
 #include <algorithm>
-#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "proto/failure.h"
+#include "proto/time_account.h"
 
 namespace corridor::cluster {
-namespace {
-
-constexpr std::string_view kPrefix = "time/";
 
 double value_of(const MetricsValues& values, std::string_view name) {
   const auto found = values.find(name);
   return found == values.end() ? 0.0 : found->second;
 }
 
-}  // namespace
-
 CoreTime cores_by_part(const MetricsValues& values) {
   const double wall_s = value_of(values, "time/wall_s");
   if (wall_s <= 0.0) return {};
   CoreTime parts;
   double busy = 0.0;
-  for (const auto& [name, value] : values) {
-    if (!name.starts_with(kPrefix) || name.ends_with("_s")) continue;
-    const std::string part = name.substr(kPrefix.size());
-    if (part.starts_with("wait_")) continue;
-    parts[part] = value;
-    busy += value;
+  for (std::size_t i = 0; i < kTimeParts; ++i) {
+    const auto part = static_cast<TimePart>(i);
+    const auto found = values.find(std::string("time/") + time_part_name(part));
+    if (is_wait(part) || found == values.end()) continue;
+    parts[time_part_name(part)] = found->second;
+    busy += found->second;
   }
   const double cores = value_of(values, "time/cpu_s") / wall_s;
   for (auto& [part, share] : parts) share *= busy > 0.0 ? cores / busy : 0.0;

@@ -3,6 +3,7 @@
 
 #include <map>
 #include <string>
+#include <string_view>
 
 namespace corridor::cluster {
 
@@ -11,6 +12,9 @@ using CoreTime = std::map<std::string, double>;
 
 // The numbers of a metrics line by name.
 using MetricsValues = std::map<std::string, double, std::less<>>;
+
+// 0 when there is no such number.
+double value_of(const MetricsValues& values, std::string_view name);
 
 // How many cores one process keeps busy, by part: its processor time over the line's wall time,
 // shared out in proportion to the parts that do not wait. Empty when the line has no times.

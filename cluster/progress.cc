@@ -237,20 +237,25 @@ std::string TrainingProgress::waiting() const {
   }
   const double busy = sum(of_all) / cores_;
 
-  const double most = std::max({*for_actors, *for_weights, for_replay});
+  struct Side {
+    double waited_for;  // by the others
+    std::string name;
+    const CoreTime& parts;
+  };
+  const Side sides[] = {{for_replay, "the replay server", of_replay},
+                        {*for_weights, "the learner", of_learner},
+                        {*for_actors, "the actors", of_actors}};
+  const Side most =
+      *std::max_element(std::begin(sides), std::end(sides),
+                        [](const Side& a, const Side& b) { return a.waited_for < b.waited_for; });
+  const auto described = [](const std::string& name, const CoreTime& parts) {
+    return parts.empty() ? name : name + ": " + largest_parts(parts, kPartsNamed);
+  };
   std::string bottleneck = "none";
-  const CoreTime* parts = nullptr;
   if (busy >= kCoresBusy) {
-    bottleneck = fmt::format("the {} cores", cores_);
-    parts = &of_all;
-  } else if (most >= kWaitsMuch) {
-    bottleneck = most == for_replay     ? "the replay server"
-                 : most == *for_weights ? "the learner"
-                                        : "the actors";
-    parts = most == for_replay ? &of_replay : most == *for_weights ? &of_learner : &of_actors;
-  }
-  if (parts != nullptr && !parts->empty()) {
-    bottleneck += ": " + largest_parts(*parts, kPartsNamed);
+    bottleneck = described(fmt::format("the {} cores", cores_), of_all);
+  } else if (most.waited_for >= kWaitsMuch) {
+    bottleneck = described(most.name, most.parts);
   }
   std::string text = fmt::format("waits: learner {} for actors, actors {} for weights",
                                  percent(*for_actors), percent(*for_weights));

@@ -41,6 +41,15 @@ static_assert(sizeof(SegmentTable) == kTableBytes);
 // Room for what is not payload: pointers, the structs' own numbers, rounding up to whole words.
 constexpr std::size_t kFrameWords = 64;
 
+// Writes the table of a message built behind it; returns how many bytes both take.
+std::size_t write_table(capnp::MessageBuilder& message, void* table_at) {
+  const auto segments = message.getSegmentsForOutput();
+  CORRIDOR_CHECK(segments.size() == 1, "{} segments", segments.size());
+  const SegmentTable table{0, static_cast<std::uint32_t>(segments[0].size())};
+  std::memcpy(table_at, &table, sizeof table);
+  return kTableBytes + segments[0].asBytes().size();
+}
+
 // `fill` sets the fields of an empty Root. `payload_bytes` bounds the sum of its texts and data.
 template <typename Root, typename Fill>
 Bytes build(std::size_t payload_bytes, const Fill& fill) {
@@ -50,11 +59,7 @@ Bytes build(std::size_t payload_bytes, const Fill& fill) {
   capnp::FlatMessageBuilder message(
       kj::arrayPtr(reinterpret_cast<word*>(bytes.data() + kTableBytes), words));
   fill(message.initRoot<Root>());
-  const auto segments = message.getSegmentsForOutput();
-  CORRIDOR_CHECK(segments.size() == 1, "{} segments", segments.size());
-  const SegmentTable table{0, static_cast<std::uint32_t>(segments[0].size())};
-  std::memcpy(bytes.data(), &table, sizeof table);
-  bytes.resize(kTableBytes + segments[0].asBytes().size());
+  bytes.resize(write_table(message, bytes.data()));
   return bytes;
 }
 
@@ -291,14 +296,24 @@ Step read_step(wire::ReplayRequest::Step::Reader from) {
   return step;
 }
 
-Batch read_batch(wire::ReplayReply::Batch::Reader from) {
-  Batch batch{from.getObservations(), values_of<float>(from.getRows(), "rows"),
-              values_of<std::uint64_t>(from.getKeys(), "keys"),
-              values_of<float>(from.getWeights(), "weights")};
+// Without its body.
+ReceivedBatch read_batch(wire::ReplayReply::Batch::Reader from) {
+  ReceivedBatch batch{from.getObservations(),
+                      span_of<float>(from.getRows(), "rows"),
+                      span_of<std::uint64_t>(from.getKeys(), "keys"),
+                      span_of<float>(from.getWeights(), "weights"),
+                      {}};
   const std::size_t rows = row_count(batch.rows, batch.observations);
   require_count(batch.keys.size(), rows, "keys");
   require_count(batch.weights.size(), rows, "weights");
   return batch;
+}
+
+Batch copy_of(const ReceivedBatch& batch) {
+  return {batch.observations,
+          {batch.rows.begin(), batch.rows.end()},
+          {batch.keys.begin(), batch.keys.end()},
+          {batch.weights.begin(), batch.weights.end()}};
 }
 
 [[noreturn]] void unknown_kind(const char* name, unsigned kind) {
@@ -353,12 +368,8 @@ BatchToFill batch_to_fill(std::uint32_t observations, std::size_t rows) {
   result.rows = part.operator()<float>(batch.initRows(size(row_bytes)));
   result.keys = part.operator()<std::uint64_t>(batch.initKeys(size(rows * sizeof(std::uint64_t))));
   result.weights = part.operator()<float>(batch.initWeights(size(rows * sizeof(float))));
-  const auto segments = message.getSegmentsForOutput();
-  CORRIDOR_CHECK(segments.size() == 1, "{} segments", segments.size());
-  const SegmentTable table{0, static_cast<std::uint32_t>(segments[0].size())};
-  std::memcpy(memory.get(), &table, sizeof table);
-  const auto* first = reinterpret_cast<const std::byte*>(memory.get());
-  result.body = Body(memory, {first, kTableBytes + segments[0].asBytes().size()});
+  const std::size_t size_bytes = write_table(message, memory.get());
+  result.body = Body(memory, {reinterpret_cast<const std::byte*>(memory.get()), size_bytes});
   return result;
 }
 
@@ -432,7 +443,7 @@ ReplayReply decode_replay_reply(ByteView bytes) {
         return Opened{from.getOpened().getBatches()};
       }
       case ReplayReply::BATCH:
-        return read_batch(from.getBatch());
+        return copy_of(read_batch(from.getBatch()));
       case ReplayReply::SAVED:
         return Saved{};
     }
@@ -482,14 +493,9 @@ std::optional<ReceivedBatch> decode_batch(Body body) {
   return decode<wire::ReplayReply>(
       bytes, [&](wire::ReplayReply::Reader from) -> std::optional<ReceivedBatch> {
         if (!from.isBatch()) return std::nullopt;
-        const auto batch = from.getBatch();
-        ReceivedBatch result{batch.getObservations(), span_of<float>(batch.getRows(), "rows"),
-                             span_of<std::uint64_t>(batch.getKeys(), "keys"),
-                             span_of<float>(batch.getWeights(), "weights"), body};
-        const std::size_t rows = row_count(result.rows, result.observations);
-        require_count(result.keys.size(), rows, "keys");
-        require_count(result.weights.size(), rows, "weights");
-        return result;
+        ReceivedBatch batch = read_batch(from.getBatch());
+        batch.body = body;
+        return batch;
       });
 }
 

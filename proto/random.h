@@ -33,7 +33,7 @@ std::uint64_t random_bits(std::uint64_t seed, Purpose purpose,
 double random_unit(std::uint64_t seed, Purpose purpose,
                    std::initializer_list<std::uint64_t> indices);
 
-// The numbers that differ in their last index only, at a third of the cost.
+// The numbers that differ in their last index only: the first ones are absorbed once.
 class RandomSequence {
  public:
   RandomSequence(std::uint64_t seed, Purpose purpose,

@@ -1,6 +1,5 @@
 #include "replay/replay_service.h"
 
-
 #include "proto/codec.h"
 #include "proto/failure.h"
 #include "proto/tensor_file.h"

@@ -1,25 +1,22 @@
 // What an actor's step costs beside SUMO's own, part by part (proto/time_account.h).
 #include <benchmark/benchmark.h>
 
+#include <map>
 #include <string>
 
 #include "actor/driving/rules.h"
 #include "actor/episode.h"
 #include "actor/policy/q_network.h"
 #include "actor/world/sumo_world.h"
-#include "proto/run_config.h"
 #include "proto/time_account.h"
 #include "scenarios/sumo_files.h"
+#include "tests/bench/paper.h"
 #include "tests/support/temporary_directory.h"
 
 namespace corridor::actor {
 namespace {
 
-const RunConfig& paper() {
-  static const RunConfig config =
-      load_run_config(std::string(CORRIDOR_SOURCE_DIR) + "/scenarios/paper.toml");
-  return config;
-}
+using bench::paper;
 
 struct SumoFiles {
   SumoFiles() { scenarios::write_sumo_files(paper(), directory.path()); }
@@ -67,17 +64,11 @@ void Step(benchmark::State& state) {
   }
   episode.end();
   double steps_share = 0.0;
-  const auto times = place.time.take();
-  for (const char* part : {"time/simulate", "time/traffic", "time/world", "time/plan"}) {
-    for (const auto& [name, share] : times) {
-      if (name == part) steps_share += share;
-    }
-  }
-  for (const auto& [name, share] : times) {
-    for (const char* part : {"simulate", "traffic", "world", "plan"}) {
-      if (name == std::string("time/") + part) state.counters[part] = share / steps_share;
-    }
-  }
+  std::map<std::string, double> shares;
+  for (const auto& [name, share] : place.time.take()) shares[name] = share;
+  constexpr const char* kParts[] = {"simulate", "traffic", "world", "plan"};
+  for (const std::string part : kParts) steps_share += shares["time/" + part];
+  for (const std::string part : kParts) state.counters[part] = shares["time/" + part] / steps_share;
 }
 BENCHMARK(Step)->Unit(benchmark::kMicrosecond)->Iterations(20'000);
 

@@ -9,17 +9,13 @@
 #include "learner/td_networks.h"
 #include "learner/td_update.h"
 #include "proto/random.h"
-#include "proto/run_config.h"
+#include "tests/bench/paper.h"
 #include "tests/bench/td_floor.h"
 
 namespace corridor::learner {
 namespace {
 
-const RunConfig& paper() {
-  static const RunConfig config =
-      load_run_config(std::string(CORRIDOR_SOURCE_DIR) + "/scenarios/paper.toml");
-  return config;
-}
+using bench::paper;
 
 Batch random_batch(const NetworkShape& shape, int size) {
   const RowLayout layout{shape.observations};

@@ -379,21 +379,21 @@ void compare(Load load, int turns) {
   std::printf("\n");
 }
 
-void sweep(Load load) {
+void sweep(const Load& load) {
   print_head();
   for (const int row_bytes : {400, 4'000, 40'000}) {
     for (const double samples_per_insert : {0.0, load.samples_per_insert}) {
       for (const int actors : {1, 4, 16, 64, 256}) {
-        load.row_bytes = row_bytes;
+        Load one = load;
+        one.row_bytes = row_bytes;
+        one.samples_per_insert = samples_per_insert;
+        one.actors = actors;
         // At most 400 MB of rows; large rows come in smaller chunks.
-        load.capacity = std::min<std::int64_t>(load.capacity, 400'000'000 / row_bytes);
-        load.chunk = row_bytes > 10'000 ? 32 : 256;
-        load.samples_per_insert = samples_per_insert;
-        load.actors = actors;
-        print(load, measure(load));
+        one.capacity = std::min<std::int64_t>(load.capacity, 400'000'000 / row_bytes);
+        one.chunk = row_bytes > 10'000 ? 32 : 256;
+        print(one, measure(one));
       }
     }
-    load.samples_per_insert = 4.0;
   }
 }
 

@@ -3,20 +3,11 @@
 #include <algorithm>
 #include <chrono>
 
-extern "C" void sgemm_(const char* transpose_a, const char* transpose_b, const int* m, const int* n,
-                       const int* k, const float* alpha, const float* a, const int* lda,
-                       const float* b, const int* ldb, const float* beta, float* c, const int* ldc);
+#include "learner/gemm.h"
 
 namespace corridor::bench {
-namespace {
 
-void multiply(char ta, char tb, int m, int n, int k, const float* a, int lda, const float* b,
-              int ldb, float* c, int ldc) {
-  const float one = 1.0F, zero = 0.0F;
-  sgemm_(&ta, &tb, &m, &n, &k, &one, a, &lda, b, &ldb, &zero, c, &ldc);
-}
-
-}  // namespace
+using learner::multiply;
 
 TdFloor::TdFloor(const NetworkShape& shape, int batch)
     : shape_(shape),

@@ -23,6 +23,7 @@ namespace {
 
 using cluster::CoreTime;
 using cluster::MetricsLine;
+using cluster::value_of;
 
 constexpr double kDeadline_s = 3600.0;
 const std::string kBin = CORRIDOR_BIN_DIR;
@@ -34,11 +35,6 @@ std::vector<MetricsLine> lines_of(const std::filesystem::path& file) {
     if (auto line = cluster::parse_metrics_line(text)) lines.push_back(std::move(*line));
   }
   return lines;
-}
-
-double value(const MetricsLine& line, const char* name) {
-  const auto found = line.values.find(name);
-  return found == line.values.end() ? 0.0 : found->second;
 }
 
 struct PhaseTime {
@@ -54,14 +50,14 @@ std::map<std::string, PhaseTime> phases_of(const RunDirectory& run, int actors) 
   const auto add = [&](const std::string& file, const std::string& process) {
     for (const MetricsLine& line : lines_of(run.metrics(file))) {
       PhaseTime& phase = phases[line.phase];
-      const double wall_s = value(line, "time/wall_s");
+      const double wall_s = value_of(line.values, "time/wall_s");
       for (const auto& [part, cores] : cluster::cores_by_part(line.values)) {
         phase.core_s[process + " " + part] += cores * wall_s;
       }
       if (process != "learner") continue;
       phase.wall_s += wall_s;
       phase.steps = static_cast<double>(line.step);
-      phase.updates = value(line, "charts/updates");
+      phase.updates = value_of(line.values, "charts/updates");
     }
   };
   for (int i = 0; i < actors; ++i) add(fmt::format("actor-{}", i), "actor");
@@ -120,7 +116,7 @@ void print_memory(const RunDirectory& run) {
   std::printf("\npeak resident memory:");
   for (const char* process : {"actor-0", "learner", "replay"}) {
     const auto line = cluster::last_metrics_line(run.metrics(process));
-    if (line) std::printf("  %s %.0f MB", process, value(*line, "memory_mb"));
+    if (line) std::printf("  %s %.0f MB", process, value_of(line->values, "memory_mb"));
   }
   std::printf("\n");
 }
