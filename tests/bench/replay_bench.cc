@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "proto/random.h"
+#include "proto/transition.h"
 #include "replay/power.h"
 #include "replay/store.h"
 #include "replay/sum_tree.h"
@@ -59,7 +60,7 @@ void count_rows(benchmark::State& state, std::size_t rows_each) {
 // Observations for rows of 344 bytes with their key, as other servers are measured with, and of the
 // paper's MoP.
 constexpr int kObservations344 = 40;
-constexpr int kObservationsMop = 44;
+constexpr int kObservationsMop = kMopScalars + kMopPerCorridor * 5;
 // The second capacity is no power of two.
 void rings(benchmark::internal::Benchmark* benchmark) {
   benchmark->Args({kObservations344, kRows})
