@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "proto/failure.h"
+#include "proto/json_numbers.h"
 
 namespace corridor::actor {
 namespace {
@@ -118,10 +119,10 @@ Redriven redrive(const RunConfig& config, const std::filesystem::path& file, wor
   int steps = 0;
   Redriven result;
   try {
-    start.seed = record.at("episode_seed").get<std::uint64_t>();
+    start.seed = whole_number<std::uint64_t>(record.at("episode_seed"));
     if (record.at("driven_by_world").get<bool>()) start.driver = world::EgoDriver::kWorld;
-    actions = record.at("actions").get<std::vector<std::uint8_t>>();
-    steps = record.at("summary").at("steps").get<int>();
+    actions = whole_numbers<std::uint8_t>(record.at("actions"));
+    steps = whole_number<int>(record.at("summary").at("steps"));
     result.recorded_hash =
         std::stoull(record.at("trajectory_hash").get<std::string>(), nullptr, 16);
   } catch (const std::exception& error) {

@@ -4,6 +4,7 @@
 #include <span>
 
 #include "proto/hash.h"
+#include "proto/json_numbers.h"
 
 namespace corridor::cluster {
 namespace {
@@ -30,7 +31,7 @@ std::optional<Checkpoint> newest_checkpoint(const RunDirectory& directory) {
   const std::optional<std::filesystem::path> found = directory.newest_checkpoint();
   if (!found) return std::nullopt;
   // Its presence and type were checked with the rest.
-  const auto round = read_json(*found / "manifest.json").at("round").get<std::uint64_t>();
+  const auto round = whole_number<std::uint64_t>(read_json(*found / "manifest.json").at("round"));
   return Checkpoint{*found, round + 1};
 }
 

@@ -7,21 +7,31 @@
 #include "cluster/statistics.h"
 #include "cluster/text.h"
 #include "proto/failure.h"
+#include "proto/json_numbers.h"
 
 namespace corridor::cluster {
 namespace {
 
 using nlohmann::json;
 
+template <typename T>
+void read(const json& value, T& into) {
+  if constexpr (std::integral<T>) {
+    into = whole_number<T>(value);
+  } else {
+    value.get_to(into);
+  }
+}
+
 EpisodeResult parse_episode(const json& entry) {
   EpisodeResult result;
-  entry.at("steps").get_to(result.steps);
-  entry.at("bp_reward").get_to(result.bp_reward);
-  entry.at("collisions").get_to(result.collisions);
-  entry.at("lane_changes").get_to(result.lane_changes);
-  entry.at("hard_brakes").get_to(result.hard_brakes);
-  entry.at("distance_m").get_to(result.distance_m);
-  entry.at("lane_steps").get_to(result.lane_steps);
+  read(entry.at("steps"), result.steps);
+  read(entry.at("bp_reward"), result.bp_reward);
+  read(entry.at("collisions"), result.collisions);
+  read(entry.at("lane_changes"), result.lane_changes);
+  read(entry.at("hard_brakes"), result.hard_brakes);
+  read(entry.at("distance_m"), result.distance_m);
+  result.lane_steps = whole_numbers<std::int64_t>(entry.at("lane_steps"));
   return result;
 }
 
@@ -155,25 +165,24 @@ constexpr const char* kPaperTable =
 EvaluationResult parse_evaluation(const json& json, const std::string& name) {
   EvaluationResult result;
   try {
-    json.at("planner").get_to(result.planner);
-    json.at("seed").get_to(result.seed);
-    json.at("steps").get_to(result.steps);
-    json.at("episodes").get_to(result.episodes);
-    json.at("bp_reward_per_1000").get_to(result.bp_reward_per_1000);
-    json.at("collisions").get_to(result.collisions);
+    read(json.at("planner"), result.planner);
+    read(json.at("seed"), result.seed);
+    read(json.at("steps"), result.steps);
+    read(json.at("episodes"), result.episodes);
+    read(json.at("bp_reward_per_1000"), result.bp_reward_per_1000);
+    read(json.at("collisions"), result.collisions);
     for (std::size_t kind = 0; kind < kCollisionKinds.size(); ++kind) {
-      json.at("collisions_by_kind")
-          .at(kCollisionKinds[kind])
-          .get_to(result.collisions_by_kind[kind]);
+      read(json.at("collisions_by_kind").at(kCollisionKinds[kind]),
+           result.collisions_by_kind[kind]);
     }
-    json.at("lane_changes").get_to(result.lane_changes);
-    json.at("mean_speed_kph").get_to(result.mean_speed_kph);
-    json.at("distance_km").get_to(result.distance_km);
+    read(json.at("lane_changes"), result.lane_changes);
+    read(json.at("mean_speed_kph"), result.mean_speed_kph);
+    read(json.at("distance_km"), result.distance_km);
     for (const auto& entry : json.at("per_episode")) {
       result.per_episode.push_back(parse_episode(entry));
-      if (result.per_episode.back().steps <= 0) throw Failure("{}: an episode of no steps", name);
+      if (result.per_episode.back().steps <= 0) throw Failure("an episode of no steps");
     }
-  } catch (const nlohmann::json::exception& error) {
+  } catch (const std::exception& error) {
     throw Failure("{} is no evaluation: {}", name, error.what());
   }
   if (result.per_episode.empty()) throw Failure("{} is no evaluation: it has no episodes", name);

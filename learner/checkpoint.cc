@@ -4,7 +4,6 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "learner/q_network.h"
 #include "proto/failure.h"
 
 namespace corridor::learner {
@@ -61,15 +60,6 @@ void put_number(TensorFile& tensors, const std::string& name, T value) {
 
 Phase phase_in_progress(const Schedule& schedule, std::uint64_t next_round) {
   return schedule.phase_of(std::min(next_round, schedule.rounds() - 1));
-}
-
-LearnerState initial_state(const RunConfig& config) {
-  Weights first{0, initial_parameters(config.network(Phase::kMop), config.run.seed, Phase::kMop),
-                initial_parameters(config.network(Phase::kBp), config.run.seed, Phase::kBp)};
-  LearnerState state;
-  state.td = initial_td_state(first.mop);
-  state.published.push_back(std::move(first));
-  return state;
 }
 
 Networks networks_to_use(const LearnerState& state, Phase phase) {

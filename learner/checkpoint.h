@@ -41,9 +41,6 @@ struct Networks {
 
 Phase phase_in_progress(const Schedule& schedule, std::uint64_t next_round);
 
-// Before the first block: version 0 is published.
-LearnerState initial_state(const RunConfig& config);
-
 Networks networks_to_use(const LearnerState& state, Phase phase);
 
 // Tensors "mop" and "bp": networks_to_use; metadata "mop.shape" and "bp.shape": their NetworkShape

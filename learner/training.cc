@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "learner/q_network.h"
 #include "proto/failure.h"
 #include "proto/random.h"
 
@@ -49,6 +50,15 @@ std::vector<float> running_average(std::vector<float> average, const std::vector
     average[i] = newest[i] + kept * (average[i] - newest[i]);
   }
   return average;
+}
+
+LearnerState initial_state(const RunConfig& config) {
+  Weights first{0, initial_parameters(config.network(Phase::kMop), config.run.seed, Phase::kMop),
+                initial_parameters(config.network(Phase::kBp), config.run.seed, Phase::kBp)};
+  LearnerState state;
+  state.td = initial_td_state(first.mop);
+  state.published.push_back(std::move(first));
+  return state;
 }
 
 LearnerState load_state(const RunConfig& config, const RunDirectory& directory) {

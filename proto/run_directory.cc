@@ -12,6 +12,7 @@
 
 #include "proto/failure.h"
 #include "proto/hash.h"
+#include "proto/json_numbers.h"
 #include "proto/settings.h"
 
 namespace corridor {
@@ -118,7 +119,7 @@ void remove_old_checkpoints(const fs::path& directory, std::uint64_t round, int 
 
 void check_file(const fs::path& file, const json& expected) {
   const std::string content = read_file(file);
-  if (content.size() != expected.at("size").get<std::uint64_t>() ||
+  if (content.size() != whole_number<std::uint64_t>(expected.at("size")) ||
       hash_of(content) != expected.at("xxh3").get<std::string>()) {
     throw Failure("{} is damaged: its size or hash is not what the manifest beside it says",
                   file.string());
@@ -246,7 +247,7 @@ std::optional<fs::path> RunDirectory::newest_checkpoint() const {
   const fs::path manifest_file = directory / "manifest.json";
   const json manifest = read_json(manifest_file);
   try {
-    if (manifest.at("round").get<std::uint64_t>() != *round) {
+    if (whole_number<std::uint64_t>(manifest.at("round")) != *round) {
       throw Failure("{} is damaged: it is of another round", manifest_file.string());
     }
     for (const auto& [file, expected] : manifest.at("files").items()) {

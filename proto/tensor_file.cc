@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "proto/failure.h"
+#include "proto/json_numbers.h"
 #include "proto/run_directory.h"
 
 namespace corridor {
@@ -72,14 +73,15 @@ struct Extent {
 
 // One entry of the header. Its numbers may lie.
 Tensor tensor_from(const json& entry, std::string_view data, std::vector<Extent>& extents) {
-  const auto offsets = entry.at("data_offsets").get<std::array<std::size_t, 2>>();
+  const std::vector<std::size_t> offsets = whole_numbers<std::size_t>(entry.at("data_offsets"));
+  if (offsets.size() != 2) throw Failure("it has {} offsets", offsets.size());
   const Extent extent{offsets[0], offsets[1]};
   if (extent.begin > extent.end || extent.end > data.size()) {
     throw Failure("it lies outside the file's {} bytes of data", data.size());
   }
   extents.push_back(extent);
   const std::string_view bytes = data.substr(extent.begin, extent.end - extent.begin);
-  Tensor tensor{entry.at("shape").get<std::vector<std::size_t>>(),
+  Tensor tensor{whole_numbers<std::size_t>(entry.at("shape")),
                 data_from(entry.at("dtype").get<std::string>(), bytes)};
   const auto [size, width] = std::visit(
       [](const auto& values) { return std::pair(values.size(), sizeof(values[0])); }, tensor.data);
@@ -176,13 +178,16 @@ void write_tensors(const std::filesystem::path& file, const TensorFile& content)
   write_file(file, bytes);
 }
 
-TensorFile read_tensors(const std::filesystem::path& file) {
-  const std::string content = read_file(file);
+TensorFile parse_tensors(std::string_view content, const std::string& name) {
   try {
     return parse(content);
   } catch (const std::exception& error) {
-    throw Failure("{} is no whole safetensors file: {}", file.string(), error.what());
+    throw Failure("{} is no whole safetensors file: {}", name, error.what());
   }
+}
+
+TensorFile read_tensors(const std::filesystem::path& file) {
+  return parse_tensors(read_file(file), file.string());
 }
 
 }  // namespace corridor

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -42,5 +43,7 @@ struct TensorFile {
 void write_tensors(const std::filesystem::path& file, const TensorFile& content);
 // Throws Failure naming the file: missing, truncated, a header that lies about sizes or offsets.
 TensorFile read_tensors(const std::filesystem::path& file);
+// The same from a file's content; `name` names it in messages.
+TensorFile parse_tensors(std::string_view content, const std::string& name);
 
 }  // namespace corridor

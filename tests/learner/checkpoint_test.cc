@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "learner/q_network.h"
+#include "learner/training.h"
 #include "proto/failure.h"
 
 namespace corridor::learner {
