@@ -7,11 +7,11 @@
 #include "actor/evaluation.h"
 #include "actor/training.h"
 #include "actor/world/sumo_world.h"
+#include "proto/checkpoints.h"
 #include "proto/failure.h"
 #include "proto/program.h"
 #include "proto/run_config.h"
 #include "proto/run_directory.h"
-#include "proto/tensor_file.h"
 #include "proto/time_account.h"
 
 namespace {
@@ -29,13 +29,13 @@ struct Arguments {
 };
 
 actor::TrainedNetworks trained_networks(const RunDirectory& directory) {
-  const auto checkpoint = directory.newest_checkpoint();
+  const auto checkpoint = Checkpoints(directory.checkpoints()).newest();
   if (!checkpoint) {
     throw Failure("{} has no checkpoint yet: train on, or evaluate another run",
                   directory.root().string());
   }
   const std::string file = *checkpoint / "learner.safetensors";
-  const TensorFile tensors = read_tensors(file);
+  const TensorFile tensors = read_checkpoint_file(*checkpoint, "learner.safetensors");
   return {tensors.get<float>("mop", file), tensors.get<float>("bp", file)};
 }
 
@@ -50,7 +50,7 @@ int evaluate(const Arguments& arguments, const RunConfig& config, const RunDirec
                     std::fflush(stdout);
                     return !stop_requested();
                   });
-  return stop_requested() ? 1 : 0;
+  return 0;
 }
 
 int redrive(const Arguments& arguments, const RunConfig& config, world::World& world) {
@@ -95,5 +95,5 @@ int main(int argc, char** argv) {
                  "SUMO writes its trajectories here (evaluate: a directory; redrive: a file)");
   app.add_option("--redrive", arguments.episode, "drive this recorded episode again");
   CLI11_PARSE(app, argc, argv);
-  return run_program("corridor-actor", true, [&] { return run(arguments); });
+  return run_program("corridor-actor", [&] { return run(arguments); });
 }

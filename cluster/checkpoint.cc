@@ -1,10 +1,9 @@
 #include "cluster/checkpoint.h"
 
-#include <nlohmann/json.hpp>
 #include <span>
 
+#include "proto/checkpoints.h"
 #include "proto/hash.h"
-#include "proto/json_numbers.h"
 
 namespace corridor::cluster {
 namespace {
@@ -25,14 +24,35 @@ void add(Hash& hash, const TensorFile& file) {
   }
 }
 
+// replay.safetensors with all of the rows.
+TensorFile whole_replay(const std::filesystem::path& checkpoint) {
+  constexpr const char* kFile = "replay.safetensors";
+  TensorFile replay = read_checkpoint_file(checkpoint, kFile);
+  const auto first_of = [&](const char* tensor) {
+    return replay.get<std::uint64_t>(tensor, kFile).at(0);
+  };
+  const std::uint64_t next_key = first_of("next_key");
+  const std::uint64_t oldest_key = next_key - replay.get<float>("leaves", kFile).size();
+  std::vector<float> rows;
+  std::size_t stride = 0;
+  for (const RowsFile& file : rows_files(checkpoint)) {
+    const TensorFile part = read_checkpoint_file(checkpoint, file.name());
+    const auto& values = part.get<float>("rows", file.name());
+    stride = part.tensors.at("rows").shape.back();
+    const std::uint64_t given_way = oldest_key > file.first_key ? oldest_key - file.first_key : 0;
+    rows.insert(rows.end(), values.begin() + static_cast<std::ptrdiff_t>(given_way * stride),
+                values.end());
+  }
+  replay.tensors.insert_or_assign("rows", Tensor{{next_key - oldest_key, stride}, std::move(rows)});
+  return replay;
+}
+
 }  // namespace
 
 std::optional<Checkpoint> newest_checkpoint(const RunDirectory& directory) {
-  const std::optional<std::filesystem::path> found = directory.newest_checkpoint();
+  const auto found = Checkpoints(directory.checkpoints()).newest();
   if (!found) return std::nullopt;
-  // Its presence and type were checked with the rest.
-  const auto round = whole_number<std::uint64_t>(read_json(*found / "manifest.json").at("round"));
-  return Checkpoint{*found, round + 1};
+  return Checkpoint{*found, checkpoint_round(*found) + 1};
 }
 
 std::string fingerprint(const TensorFile& learner, const TensorFile& replay) {
@@ -43,8 +63,8 @@ std::string fingerprint(const TensorFile& learner, const TensorFile& replay) {
 }
 
 std::string fingerprint(const Checkpoint& checkpoint) {
-  return fingerprint(read_tensors(checkpoint.directory / "learner.safetensors"),
-                     read_tensors(checkpoint.directory / "replay.safetensors"));
+  return fingerprint(read_checkpoint_file(checkpoint.directory, "learner.safetensors"),
+                     whole_replay(checkpoint.directory));
 }
 
 }  // namespace corridor::cluster

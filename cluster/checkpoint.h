@@ -16,7 +16,7 @@ struct Checkpoint {
   std::uint64_t rounds_done = 0;  // rounds 0 .. rounds_done-1 are in it
 };
 
-// Nothing when there is none yet. Throws Failure naming the damaged file.
+// Nothing when there is none yet.
 std::optional<Checkpoint> newest_checkpoint(const RunDirectory& directory);
 
 // Hash, in hex, over what a checkpoint holds: both networks, the optimiser's state, the replay's

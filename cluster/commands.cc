@@ -18,11 +18,17 @@ namespace {
 struct Arguments {
   std::string program;
   TrainOptions train;
+  ResumeOptions resume;
   EvaluateOptions evaluate;
   std::filesystem::path run;
   std::filesystem::path scenario;
   std::string episode;
 };
+
+void declare_settings(CLI::App& app, std::vector<std::string>& settings) {
+  app.add_option("--set", settings, "table.key=value: overrides the scenario; repeatable")
+      ->allow_extra_args(false);
+}
 
 void declare_train(CLI::App& app, Arguments& arguments) {
   TrainOptions& options = arguments.train;
@@ -32,8 +38,7 @@ void declare_train(CLI::App& app, Arguments& arguments) {
   app.add_option("--seed", options.seed, "seed of everything random (run.seed)")
       ->take_last()
       ->check(CLI::NonNegativeNumber);
-  app.add_option("--set", options.settings, "table.key=value: overrides the scenario; repeatable")
-      ->allow_extra_args(false);
+  declare_settings(app, options.settings);
 }
 
 void declare_run(CLI::App& app, std::filesystem::path& run) {
@@ -80,9 +85,14 @@ const Command kCommands[] = {
      "  corridor train scenarios/paper.toml --run runs/paper --actors 4 --seed 2\n"
      "  corridor train scenarios/paper.toml --run runs/calm --set traffic.blind_rate_per_s=0",
      declare_train, [](const Arguments& a) { return train(a.train, a.program); }},
-    {"resume", "Go on with a training from its newest checkpoint", "corridor resume runs/first",
-     [](CLI::App& app, Arguments& a) { declare_run(app, a.run); },
-     [](const Arguments& a) { return resume(a.run, a.program); }},
+    {"resume", "Go on with a training from its newest checkpoint",
+     "corridor resume runs/first\n"
+     "  corridor resume runs/first --set schedule.checkpoint_every_steps=20000",
+     [](CLI::App& app, Arguments& a) {
+       declare_run(app, a.resume.run);
+       declare_settings(app, a.resume.settings);
+     },
+     [](const Arguments& a) { return resume(a.resume, a.program); }},
     {"evaluate", "Drive planners greedily on held-out traffic and print the paper's table",
      "corridor evaluate runs/first\n"
      "  corridor evaluate runs/first --planners hierarchical,sumo --seeds 1002,1003 --json "

@@ -4,6 +4,6 @@
 #include "proto/program.h"
 
 int main(int argc, char** argv) {
-  return corridor::run_program("corridor", /*dies_with_parent=*/false,
+  return corridor::run_program("corridor",
                                [&] { return corridor::cluster::run_command(argc, argv); });
 }

@@ -16,6 +16,8 @@
 
 #include "proto/failure.h"
 #include "proto/program.h"
+#include "proto/run_config.h"
+#include "proto/run_directory.h"
 
 namespace corridor::cluster {
 namespace {
@@ -93,7 +95,17 @@ nlohmann::ordered_json describe_run(const std::string& run_id, const RunConfig& 
             {"sumo", sumo_version()},
             {"libtorch", CORRIDOR_TORCH_VERSION},
             {"blas", blas_library()},
-            {"compiler", CORRIDOR_COMPILER}}}};
+            {"compiler", CORRIDOR_COMPILER}}},
+          {"config", to_toml(config)}};
+}
+
+RunConfig config_at_start(const RunDirectory& directory) {
+  const std::string file = directory.manifest().string();
+  const nlohmann::json manifest = read_json(file);
+  if (!manifest.is_object() || !manifest.contains("config") || !manifest["config"].is_string()) {
+    throw Failure("{} is damaged: it does not say with which settings the run began", file);
+  }
+  return parse_run_config(manifest["config"].get<std::string>(), file);
 }
 
 }  // namespace corridor::cluster

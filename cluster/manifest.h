@@ -5,6 +5,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
+#include "proto/run_directory.h"
 #include "proto/settings.h"
 
 namespace corridor::cluster {
@@ -13,8 +14,12 @@ namespace corridor::cluster {
 std::string draw_run_id();
 
 // run_id, seed, scenario, started (UTC), host, cpu, cores, and the versions of corridor, its git
-// commit, SUMO, LibTorch, BLAS and compiler. What is not known says "unknown".
+// commit, SUMO, LibTorch, BLAS and compiler, and the settings (config, in TOML). What is not known
+// says "unknown".
 nlohmann::ordered_json describe_run(const std::string& run_id, const RunConfig& config,
                                     const std::filesystem::path& scenario);
+
+// The settings with which the run began, whatever its config.toml says now. Throws Failure.
+RunConfig config_at_start(const RunDirectory& directory);
 
 }  // namespace corridor::cluster

@@ -18,6 +18,9 @@ std::vector<ProcessPlan> training_plan(const RunSettings& settings, const RunDir
                                    process(kLearner, "corridor-learner", {})};
   for (int i = 0; i < settings.actors; ++i) {
     plan.push_back(process(actor_name(i), "corridor-actor", {"--index", std::to_string(i)}));
+    // The replay server knows where it stood.
+    plan.back().replaceable = true;
+    plan.back().ends_by_itself = true;
   }
   return plan;
 }

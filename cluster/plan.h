@@ -14,6 +14,8 @@ struct ProcessPlan {
   std::string name;               // unique in a list; people see it
   std::vector<std::string> argv;  // argv[0] is the program's path
   std::filesystem::path log;      // standard output and error are appended to it
+  bool replaceable = false;       // can be started again while the others go on
+  bool ends_by_itself = false;    // before the main process has, when its own work is done
   bool operator==(const ProcessPlan&) const = default;
 };
 

@@ -156,6 +156,7 @@ void TrainingProgress::on_learner(const MetricsLine& line, double now_s) {
   note("learner", line);
   if (line.round >= schedule_.rounds()) return;  // of another configuration
   steps_done_ = static_cast<std::int64_t>(line.round + 1) * schedule_.steps_per_round();
+  if (steps_done_ < history_.back().second) history_.clear();  // gone back to a checkpoint
   history_.emplace_back(now_s, steps_done_);
   while (history_.size() > 2 && history_[1].first < now_s - kRateWindow_s) history_.pop_front();
 }
@@ -278,6 +279,13 @@ ProgressDisplay::~ProgressDisplay() { std::fflush(stdout); }
 
 bool ProgressDisplay::due(double now_s) const {
   return terminal_ || !last_s_ || now_s - *last_s_ >= kPlainInterval_s;
+}
+
+void ProgressDisplay::announce(const std::string& line) {
+  if (shown_ > 0) fmt::print("\x1b[{}F\x1b[J", shown_);
+  shown_ = 0;
+  fmt::print("{}\n", line);
+  std::fflush(stdout);
 }
 
 void ProgressDisplay::show(const std::vector<std::string>& lines, double now_s) {

@@ -112,6 +112,8 @@ class ProgressDisplay {
   // Whether something shown now would be seen: saves the caller the work.
   bool due(double now_s) const;
   void show(const std::vector<std::string>& lines, double now_s);
+  // A line that stays, above what is shown from now on.
+  void announce(const std::string& line);
 
  private:
   bool terminal_;

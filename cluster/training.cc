@@ -1,5 +1,6 @@
 #include "cluster/training.h"
 
+#include <algorithm>
 #include <csignal>
 #include <nlohmann/json.hpp>
 
@@ -10,6 +11,7 @@
 #include "cluster/progress.h"
 #include "cluster/run_lock.h"
 #include "cluster/text.h"
+#include "proto/checkpoints.h"
 #include "proto/failure.h"
 #include "proto/program.h"
 #include "proto/run_config.h"
@@ -50,6 +52,9 @@ class Monitor {
       actors_.emplace_back(directory.metrics(actor_name(i)));
     }
   }
+
+  void announce(const std::string& line) { display_.announce(line); }
+  std::int64_t steps_done() const { return progress_.steps_done(); }
 
   void tick() {
     const double now_s = monotonic_s();
@@ -101,13 +106,36 @@ std::uint64_t rounds_done(const RunDirectory& directory) {
   return checkpoint ? checkpoint->rounds_done : 0;
 }
 
+// What nobody alive is writing any more; a line for each damaged checkpoint.
+std::vector<std::string> clean_up(const RunDirectory& directory) {
+  directory.remove_leftovers();
+  return Checkpoints(directory.checkpoints()).set_aside_damaged();
+}
+
 int supervise(const RunConfig& config, const RunDirectory& directory, std::uint64_t rounds_before,
               const std::string& program) {
   const Schedule schedule(config);
   const double start_s = monotonic_s();
   Monitor monitor(config, directory, rounds_before);
+  Limits limits;
+  // Before others take it for lost.
+  limits.hung = Milliseconds(static_cast<std::int64_t>(config.run.peer_timeout_s * 1000.0 * 2 / 3));
+  Supervision supervision;
+  supervision.tick = [&] { monitor.tick(); };
+  supervision.progress = [&] { return static_cast<std::uint64_t>(monitor.steps_done()); };
+  supervision.died = [&](const Ended& ended, bool all) {
+    if (!all) {
+      monitor.announce(fmt::format("{}; started again", ended.cause()));
+      return;
+    }
+    for (const std::string& line : clean_up(directory)) monitor.announce(line);
+    const std::uint64_t rounds = rounds_done(directory);
+    monitor.announce(fmt::format("{}; all go on from {}", ended.cause(),
+                                 rounds > 0 ? "the checkpoint of " + position(schedule, rounds)
+                                            : std::string("the beginning")));
+  };
   const Ending ending = run_together(training_plan(config.run, directory, program_directory()),
-                                     kLearner, Limits{}, [&] { monitor.tick(); });
+                                     kLearner, limits, supervision);
   monitor.tick();
 
   const std::uint64_t rounds = rounds_done(directory);
@@ -125,6 +153,34 @@ int supervise(const RunConfig& config, const RunDirectory& directory, std::uint6
              position(schedule, rounds));
   print_what_comes_next(directory, program);
   return 0;
+}
+
+// Keys that may change in the middle of a run: the others decide its result.
+bool may_change(std::string_view key) {
+  constexpr std::string_view kTables[] = {"evaluation."};
+  constexpr std::string_view kKeys[] = {
+      "schedule.checkpoint_every_steps", "schedule.checkpoints_kept", "run.transport", "run.host",
+      "run.replay_port", "run.learner_port", "run.peer_timeout_s", "run.delay_ms_max"};
+  return std::any_of(std::begin(kTables), std::end(kTables),
+                     [&](std::string_view table) { return key.starts_with(table); }) ||
+         std::find(std::begin(kKeys), std::end(kKeys), key) != std::end(kKeys);
+}
+
+// The settings to go on with, which config.toml then says.
+RunConfig changed_config(const ResumeOptions& options, const RunDirectory& directory) {
+  const RunConfig at_start = config_at_start(directory);
+  const RunConfig config = load_run_config(directory.config(), options.settings);
+  for (const ChangedKey& key : changed_keys(at_start, config)) {
+    if (may_change(key.name)) continue;
+    throw Failure("{} = {}: the run began with {}, and its result depends on it; put that back, or "
+                  "train anew",
+                  key.name, key.now, key.before);
+  }
+  for (const ChangedKey& key : changed_keys(at_start, config)) {
+    fmt::print("{} = {}, where the run began with {}\n", key.name, key.now, key.before);
+  }
+  if (!options.settings.empty()) write_file(directory.config(), to_toml(config));
+  return config;
 }
 
 }  // namespace
@@ -151,20 +207,24 @@ int train(const TrainOptions& options, const std::string& program) {
   return supervise(config, directory, 0, program);
 }
 
-int resume(const std::filesystem::path& run, const std::string& program) {
-  const RunDirectory directory = RunDirectory::open(run);
+int resume(const ResumeOptions& options, const std::string& program) {
+  const RunDirectory directory = RunDirectory::open(options.run);
   const RunLock lock(directory);
-  const RunConfig config = load_run_config(directory.config());
+  const RunConfig config = changed_config(options, directory);
+  for (const std::string& line : clean_up(directory)) {
+    fmt::print("{}; the checkpoint before it is used\n", line);
+  }
   const Schedule schedule(config);
+  const std::string run = options.run.string();
   const std::uint64_t rounds = rounds_done(directory);
   if (rounds >= schedule.rounds()) {
-    fmt::print("{} is complete: {}; nothing to resume\n", run.string(), position(schedule, rounds));
+    fmt::print("{} is complete: {}; nothing to resume\n", run, position(schedule, rounds));
     print_what_comes_next(directory, program);
     return 0;
   }
   const auto last = last_metrics_line(directory.metrics(kLearner));
   const std::uint64_t reached = last ? std::max(last->round + 1, rounds) : rounds;
-  fmt::print("{}: {}: {}; {} steps after it are repeated\n", run.string(),
+  fmt::print("{}: {}: {}; {} steps after it are repeated\n", run,
              rounds > 0 ? "goes on from the checkpoint of" : "no checkpoint yet, begins anew",
              position(schedule, rounds),
              grouped(static_cast<std::int64_t>(reached - rounds) * schedule.steps_per_round()));

@@ -17,11 +17,20 @@ struct TrainOptions {
   std::vector<std::string> settings = {};  // "table.key=value", applied last
 };
 
+struct ResumeOptions {
+  std::filesystem::path run = {};
+  std::vector<std::string> settings = {};  // "table.key=value"
+};
+
 // Both return the process's exit status: 0 when the training is complete, 128 + signal when it was
 // stopped by one. Both throw Failure when anything goes wrong; nothing is then left running, and
 // when training had not begun, no run directory is left. `program` is how people call this
 // program, for what comes next.
+//
+// resume: settings may differ from those that the run began with, in config.toml or `settings`,
+// where they do not change its result; others are refused by name. A damaged checkpoint is named
+// and set aside, and the one before is used.
 int train(const TrainOptions& options, const std::string& program);
-int resume(const std::filesystem::path& run, const std::string& program);
+int resume(const ResumeOptions& options, const std::string& program);
 
 }  // namespace corridor::cluster

@@ -75,5 +75,5 @@ int main(int argc, char** argv) {
   app.add_option("RUN_DIRECTORY", root, "the run, as `corridor train` made it")->required();
   app.set_version_flag("--version", kVersion);
   CLI11_PARSE(app, argc, argv);
-  return run_program("corridor-learner", true, [&] { return run(root); });
+  return run_program("corridor-learner", [&] { return run(root); });
 }

@@ -133,9 +133,10 @@ void ReplayClient::run_block(const Block& block,
   for (std::uint32_t i = 0; i < std::min(steps, kDepth); ++i) receive_batch(0);
 }
 
-void ReplayClient::save(const std::filesystem::path& directory) {
-  send(Save{directory.string()});
-  receive<Saved>();
+bool ReplayClient::save(const std::filesystem::path& directory,
+                        const std::filesystem::path& previous) {
+  send(Save{directory.string(), previous.string()});
+  return receive<Saved>().complete;
 }
 
 }  // namespace corridor::learner

@@ -48,8 +48,9 @@ class ReplayClient {
   // stratified draw of its own. At its return the server has all priorities.
   void run_block(const Block& block, const std::function<std::vector<float>(const Batch&)>& train);
 
-  // Between blocks.
-  void save(const std::filesystem::path& directory);
+  // Between blocks: has the replay's part of a checkpoint written; whether it is complete. To be
+  // called again, between later blocks, until it is. `previous`: the newest checkpoint, or empty.
+  bool save(const std::filesystem::path& directory, const std::filesystem::path& previous);
 
  private:
   void send(const ReplayRequest& request);

@@ -22,10 +22,6 @@ constexpr std::chrono::minutes kHangs{30};  // no round of any scenario takes th
 constexpr Duration kGlance{1};
 constexpr std::int64_t kStepsPerReport = 2500;
 
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
 double between(double first, double last, double progress) {
   return first + (last - first) * progress;
 }
@@ -62,10 +58,10 @@ LearnerState initial_state(const RunConfig& config) {
 }
 
 LearnerState load_state(const RunConfig& config, const RunDirectory& directory) {
-  const std::optional<std::filesystem::path> checkpoint = directory.newest_checkpoint();
+  const auto checkpoint = Checkpoints(directory.checkpoints()).newest();
   if (!checkpoint) return initial_state(config);
-  const std::filesystem::path file = *checkpoint / kLearnerFile;
-  return from_tensors(read_tensors(file), config, file.string());
+  return from_tensors(read_checkpoint_file(*checkpoint, kLearnerFile), config,
+                      (*checkpoint / kLearnerFile).string());
 }
 
 Training::Training(const RunConfig& config, Surroundings surroundings, LearnerState state)
@@ -74,6 +70,7 @@ Training::Training(const RunConfig& config, Surroundings surroundings, LearnerSt
       around_(std::move(surroundings)),
       state_(std::move(state)),
       phase_(phase_in_progress(schedule_, state_.next_round)),
+      checkpointer_(config_, Checkpoints(around_.directory.checkpoints()), around_.replay),
       checkpointed_(state_.next_round) {
   begin_phase(std::move(state_.td));
 }
@@ -90,12 +87,20 @@ bool Training::run() {
   while (state_.next_round < schedule_.rounds()) {
     const std::uint64_t round = state_.next_round;
     if (around_.stop_requested()) {
-      checkpoint();
+      checkpoint_now();
       return false;
     }
     if (!train_round(round)) return false;
-    if (schedule_.checkpoints_after(round)) checkpoint();
+    checkpointer_.advance();
+    checkpoint_due_ |= schedule_.checkpoints_after(round);
+    if (checkpoint_due_ && !checkpointer_.busy()) {
+      checkpoint_due_ = false;
+      checkpointed_ = state_.next_round;
+      checkpointer_.begin(state());
+    }
+    around_.time.charge(TimePart::kCheckpoint);
   }
+  checkpoint_now();
   spdlog::info("all {} blocks are done", schedule_.rounds());
   return true;
 }
@@ -103,13 +108,13 @@ bool Training::run() {
 bool Training::train_round(std::uint64_t round) {
   delay(round);
   if (schedule_.selects_in(round) && !await_selection(round)) {
-    checkpoint();
+    checkpoint_now();
     return false;
   }
   const std::optional<Opened> opened = await_block(round);
   if (!opened) {
-    spdlog::info("stops while block {} waits for actors: resuming goes on at block {}", round,
-                 checkpointed_);
+    spdlog::info("stops while block {} waits for actors: resuming goes on from the newest checkpoint",
+                 round);
     return false;
   }
   const BlockResult result = train_block(round, *opened);
@@ -214,19 +219,26 @@ void Training::finish_block(std::uint64_t round, std::uint32_t updates) {
   around_.time.charge(TimePart::kPublish);
 }
 
-void Training::checkpoint() {
-  if (checkpointed_ == state_.next_round) return;
-  const Clock::time_point start = Clock::now();
-  const std::uint64_t round = state_.next_round - 1;
-  const std::filesystem::path directory = around_.directory.begin_checkpoint(round);
-  around_.replay.save(directory);
+LearnerState Training::state() const {
   LearnerState state = state_;
   state.td = td_->state();
-  write_tensors(directory / kLearnerFile, to_tensors(state, config_));
-  around_.directory.commit_checkpoint(round, config_.schedule.checkpoints_kept);
+  return state;
+}
+
+void Training::checkpoint_now() {
+  finish_checkpoint();
+  if (checkpointed_ == state_.next_round) return;
   checkpointed_ = state_.next_round;
+  checkpointer_.begin(state());
+  finish_checkpoint();
+}
+
+void Training::finish_checkpoint() {
+  while (checkpointer_.busy()) {
+    around_.publisher.service(kGlance);
+    checkpointer_.advance();
+  }
   around_.time.charge(TimePart::kCheckpoint);
-  spdlog::info("checkpoint after block {} in {:.2f} s", round, seconds_since(start));
 }
 
 void Training::report(std::uint64_t round, const Opened& opened, const BlockResult& result) {

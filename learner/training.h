@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "learner/checkpoint.h"
+#include "learner/checkpointer.h"
 #include "learner/publisher.h"
 #include "learner/replay_client.h"
 #include "learner/td_update.h"
@@ -71,7 +72,11 @@ class Training {
   void consider(const SelectionOutcome& outcome);
   void finish_block(std::uint64_t round, std::uint32_t updates);
   void begin_phase(TdState initial);
-  void checkpoint();
+  // The whole state, td_'s included.
+  LearnerState state() const;
+  // Begins a checkpoint of the state when there is none of it yet, and waits for it.
+  void checkpoint_now();
+  void finish_checkpoint();
   void report(std::uint64_t round, const Opened& opened, const BlockResult& result);
   void delay(std::uint64_t round) const;
 
@@ -84,7 +89,9 @@ class Training {
   LearnerState state_;  // but for state_.td, which td_ holds
   Phase phase_;         // in progress
   std::unique_ptr<TdUpdate> td_;
-  std::uint64_t checkpointed_;  // next_round of the newest checkpoint
+  Checkpointer checkpointer_;
+  std::uint64_t checkpointed_;  // next_round of the newest checkpoint that was begun
+  bool checkpoint_due_ = false;
 
   std::optional<SelectionOutcome> selected_;  // in this round
   double score_ = 0.0;                        // of `selected_`

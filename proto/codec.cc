@@ -117,9 +117,12 @@ Bytes encode_request(const Step& step) {
 }
 
 Bytes encode_request(const Save& save) {
-  return build<wire::ReplayRequest>(save.directory.size(), [&](auto root) {
-    root.initSave().setDirectory(text_of(save.directory, kDirectoryBytesMax));
-  });
+  return build<wire::ReplayRequest>(
+      save.directory.size() + save.previous.size(), [&](auto root) {
+        auto to = root.initSave();
+        to.setDirectory(text_of(save.directory, kDirectoryBytesMax));
+        to.setPrevious(text_of(save.previous, kDirectoryBytesMax));
+      });
 }
 
 Bytes encode_reply(const Joined& joined) {
@@ -149,8 +152,9 @@ Bytes encode_reply(const Batch& batch) {
   });
 }
 
-Bytes encode_reply(const Saved&) {
-  return build<wire::ReplayReply>(0, [](auto root) { root.setSaved(); });
+Bytes encode_reply(const Saved& saved) {
+  return build<wire::ReplayReply>(
+      0, [&](auto root) { root.initSaved().setComplete(saved.complete); });
 }
 
 Bytes encode_request(const WeightsWanted& wanted) {
@@ -425,7 +429,8 @@ ReplayRequest decode_replay_request(ByteView bytes) {
       case ReplayRequest::STEP:
         return read_step(from.getStep());
       case ReplayRequest::SAVE:
-        return Save{string_of(from.getSave().getDirectory(), "directory", kDirectoryBytesMax)};
+        return Save{string_of(from.getSave().getDirectory(), "directory", kDirectoryBytesMax),
+                    string_of(from.getSave().getPrevious(), "previous", kDirectoryBytesMax)};
     }
     unknown_kind("a replay request", from.which());
   });
@@ -445,7 +450,7 @@ ReplayReply decode_replay_reply(ByteView bytes) {
       case ReplayReply::BATCH:
         return copy_of(read_batch(from.getBatch()));
       case ReplayReply::SAVED:
-        return Saved{};
+        return Saved{from.getSaved().getComplete()};
     }
     unknown_kind("a replay reply", from.which());
   });

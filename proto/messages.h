@@ -9,7 +9,7 @@
 namespace corridor {
 
 // Raised with every change of proto/wire.capnp or of a meaning in it.
-inline constexpr std::uint32_t kProtocolVersion = 3;
+inline constexpr std::uint32_t kProtocolVersion = 4;
 
 enum class Role : std::uint16_t { kActor, kLearner };
 enum class MessageKind : std::uint16_t { kRequest, kReply, kPending, kRefused };
@@ -57,6 +57,7 @@ struct Step {
 };
 struct Save {
   std::string directory;
+  std::string previous;
   bool operator==(const Save&) const = default;
 };
 using ReplayRequest = std::variant<Join, Insert, OpenBlock, Step, Save>;
@@ -82,6 +83,7 @@ struct Batch {
   bool operator==(const Batch&) const = default;
 };
 struct Saved {
+  bool complete = false;
   bool operator==(const Saved&) const = default;
 };
 using ReplayReply = std::variant<Joined, Inserted, Opened, Batch, Saved>;

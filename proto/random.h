@@ -23,6 +23,7 @@ enum class Purpose : std::uint64_t {
   kBlindDriver = 10,      // (episode seed, step, vehicle)
   kBootstrap = 11,        // (draw): resampling for confidence intervals
   kWireDelay = 12,        // tests that slow processes at random
+  kChaos = 13,            // tests that kill processes at random
 };
 
 // 64 uniform bits. Cost: a few ns for each index.

@@ -1,6 +1,7 @@
 #include "proto/run_config.h"
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
 #include <string_view>
@@ -62,6 +63,36 @@ class Writer {
         comment.empty() ? assignment + "\n" : fmt::format("{:<36}  # {}\n", assignment, comment);
   }
   std::string text_;
+};
+
+// Every key's name and value.
+class Lister {
+ public:
+  void table(const char* name, const char*) { table_ = name; }
+  template <typename T, typename... Rest>
+  void number(const char* key, T value, const Rest&...) {
+    list_one(key, toml_of(value));
+  }
+  template <typename T, typename... Rest>
+  void list(const char* key, const std::vector<T>& values, const Rest&...) {
+    list_one(key, toml_of(values));
+  }
+  void flag(const char* key, bool value, const char*) { list_one(key, toml_of(value)); }
+  void text(const char* key, const std::string& value, const char*) {
+    list_one(key, toml_of(value));
+  }
+  void choice(const char* key, const std::string& value, std::initializer_list<const char*>,
+              const char*) {
+    list_one(key, toml_of(value));
+  }
+  const std::vector<std::pair<std::string, std::string>>& result() const { return keys_; }
+
+ private:
+  void list_one(const char* key, std::string value) {
+    keys_.emplace_back(fmt::format("{}.{}", table_, key), std::move(value));
+  }
+  const char* table_ = "";
+  std::vector<std::pair<std::string, std::string>> keys_;
 };
 
 // ---- Reading.
@@ -251,7 +282,26 @@ std::string first_line(std::string_view what) {
   return std::string(what);
 }
 
+// The TOML library reads beyond what it was given where text is no UTF-8, and its recursion has no
+// bound: neither gets as far.
+void check_text(const std::string& text, const std::string& name) {
+  constexpr std::size_t kBytesMax = 1 << 20;
+  constexpr int kNestingMax = 64;
+  if (text.size() > kBytesMax) throw Failure("{}: {} bytes are no scenario", name, text.size());
+  try {
+    nlohmann::json(text).dump();
+  } catch (const nlohmann::json::exception&) {
+    throw Failure("{}: not valid TOML: it is no UTF-8 text", name);
+  }
+  int nesting = 0;
+  for (const char c : text) {
+    nesting += (c == '[' || c == '{') - (c == ']' || c == '}');
+    if (nesting > kNestingMax) throw Failure("{}: not valid TOML: brackets without end", name);
+  }
+}
+
 toml::value parse_document(const std::string& text, const std::string& name) {
+  check_text(text, name);
   try {
     std::istringstream in(text);
     return toml::parse(in, name);
@@ -341,6 +391,19 @@ std::string to_toml(const RunConfig& config) {
   Writer writer;
   config_keys::describe(copy, writer);
   return writer.result();
+}
+
+std::vector<ChangedKey> changed_keys(const RunConfig& before, const RunConfig& now) {
+  RunConfig copies[] = {before, now};  // the description's visitors may write
+  Lister lists[2];
+  for (int i = 0; i < 2; ++i) config_keys::describe(copies[i], lists[i]);
+  std::vector<ChangedKey> changed;
+  for (std::size_t i = 0; i < lists[0].result().size(); ++i) {
+    const auto& [name, value_before] = lists[0].result()[i];
+    const std::string& value_now = lists[1].result()[i].second;
+    if (value_before != value_now) changed.push_back({name, value_before, value_now});
+  }
+  return changed;
 }
 
 }  // namespace corridor

@@ -22,6 +22,14 @@ RunConfig load_run_config(const std::filesystem::path& file,
 RunConfig parse_run_config(const std::string& text, const std::string& name,
                            const std::vector<std::string>& overrides = {});
 
+// The keys whose values differ, in the order of proto/settings.h.
+struct ChangedKey {
+  std::string name;    // "mop.gamma"
+  std::string before;  // as TOML
+  std::string now;
+};
+std::vector<ChangedKey> changed_keys(const RunConfig& before, const RunConfig& now);
+
 // Every key with its value, in the order of proto/settings.h, each with its comment; parsing it
 // again gives an equal config (doubles print shortest round-trip).
 std::string to_toml(const RunConfig& config);

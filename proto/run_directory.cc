@@ -4,15 +4,12 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cerrno>
-#include <charconv>
 #include <cstring>
 #include <nlohmann/json.hpp>
 
 #include "proto/failure.h"
 #include "proto/hash.h"
-#include "proto/json_numbers.h"
 #include "proto/settings.h"
 
 namespace corridor {
@@ -20,6 +17,9 @@ namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
+
+// Follows the name of a file that is being written.
+constexpr const char* kTemporary = ".tmp-";
 
 // errno's text. The POSIX calls here, unlike streams, say what went wrong.
 std::string reason() { return std::strerror(errno); }
@@ -54,39 +54,8 @@ bool write_all(int fd, std::string_view content) {
   return true;
 }
 
-// Makes a rename or a new file in `directory` survive a power failure. File systems that cannot
-// do it for directories say EINVAL, and there is nothing better to do then.
-void sync_directory(const fs::path& directory) {
-  const Descriptor opened(::open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-  if (!opened.valid() || (::fsync(opened.get()) != 0 && errno != EINVAL)) {
-    throw Failure("cannot sync directory {}: {}", directory.string(), reason());
-  }
-}
-
 fs::path parent_of(const fs::path& file) {
   return file.has_parent_path() ? file.parent_path() : fs::path(".");
-}
-
-// Turns the standard library's error into one of ours.
-template <typename Action>
-void on_disk(const char* what, const fs::path& path, const Action& action) {
-  try {
-    action();
-  } catch (const fs::filesystem_error& error) {
-    throw Failure("cannot {} {}: {}", what, path.string(), error.code().message());
-  }
-}
-
-std::optional<std::uint64_t> round_of(std::string_view name) {
-  std::uint64_t round = 0;
-  const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), round);
-  if (error != std::errc() || end != name.data() + name.size()) return std::nullopt;
-  return round;
-}
-
-fs::path checkpoints_of(const fs::path& root) { return root / "checkpoints"; }
-fs::path partial_checkpoint(const fs::path& root, std::uint64_t round) {
-  return checkpoints_of(root) / (std::to_string(round) + ".partial");
 }
 
 std::string hash_of(std::string_view content) {
@@ -95,41 +64,18 @@ std::string hash_of(std::string_view content) {
   return hash.hex();
 }
 
-// Keeps the newest `kept` checkpoints up to `round`. Later ones are left over from a continuation
-// that was given up, as are half-written ones.
-void remove_old_checkpoints(const fs::path& directory, std::uint64_t round, int kept) {
-  std::vector<std::uint64_t> rounds;
-  std::vector<fs::path> doomed;
-  for (const auto& entry : fs::directory_iterator(directory)) {
-    if (!entry.is_directory()) continue;
-    const auto found = round_of(entry.path().filename().string());
-    if (found && *found <= round) {
-      rounds.push_back(*found);
-    } else {
-      doomed.push_back(entry.path());
-    }
-  }
-  std::sort(rounds.rbegin(), rounds.rend());
-  const auto first_old = std::min(rounds.size(), static_cast<std::size_t>(std::max(kept, 1)));
-  for (std::size_t i = first_old; i < rounds.size(); ++i) {
-    doomed.push_back(directory / std::to_string(rounds[i]));
-  }
-  for (const fs::path& path : doomed) fs::remove_all(path);
-}
-
-void check_file(const fs::path& file, const json& expected) {
-  const std::string content = read_file(file);
-  if (content.size() != whole_number<std::uint64_t>(expected.at("size")) ||
-      hash_of(content) != expected.at("xxh3").get<std::string>()) {
-    throw Failure("{} is damaged: its size or hash is not what the manifest beside it says",
-                  file.string());
-  }
-}
-
 }  // namespace
 
+// File systems that cannot do it for directories say EINVAL, and there is nothing better to do then.
+void sync_directory(const fs::path& directory) {
+  const Descriptor opened(::open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (!opened.valid() || (::fsync(opened.get()) != 0 && errno != EINVAL)) {
+    throw Failure("cannot sync directory {}: {}", directory.string(), reason());
+  }
+}
+
 void write_file(const fs::path& file, std::string_view content) {
-  const fs::path temporary = file.string() + ".tmp-" + std::to_string(getpid());
+  const fs::path temporary = file.string() + kTemporary + std::to_string(getpid());
   Descriptor out(::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644));
   const bool written = out.valid() && write_all(out.get(), content) && ::fsync(out.get()) == 0 &&
                        out.close() && ::rename(temporary.c_str(), file.c_str()) == 0;
@@ -196,67 +142,25 @@ RunDirectory RunDirectory::open(const fs::path& root) {
   return directory;
 }
 
+void RunDirectory::remove_leftovers() const {
+  on_disk("remove leftovers from", root_, [&] {
+    std::vector<fs::path> doomed;
+    for (const auto& entry : fs::recursive_directory_iterator(root_)) {
+      const std::string name = entry.path().filename().string();
+      if (name.find(kTemporary) != std::string::npos || name.ends_with(".partial")) {
+        doomed.push_back(entry.path());
+      }
+    }
+    for (const fs::path& path : doomed) fs::remove_all(path);
+  });
+}
+
 fs::path RunDirectory::log(std::string_view process) const {
   return root_ / "log" / (std::string(process) + ".log");
 }
 
 fs::path RunDirectory::metrics(std::string_view process) const {
   return root_ / "metrics" / (std::string(process) + ".jsonl");
-}
-
-fs::path RunDirectory::begin_checkpoint(std::uint64_t round) const {
-  const fs::path directory = partial_checkpoint(root_, round);
-  on_disk("create", directory, [&] {
-    fs::remove_all(directory);
-    fs::create_directories(directory);
-  });
-  return directory;
-}
-
-void RunDirectory::commit_checkpoint(std::uint64_t round, int kept) const {
-  const fs::path partial = partial_checkpoint(root_, round);
-  const fs::path checkpoints = checkpoints_of(root_);
-  const std::string name = std::to_string(round);
-  on_disk("complete checkpoint", partial, [&] {
-    json files = json::object();
-    for (const auto& entry : fs::directory_iterator(partial)) {
-      const std::string content = read_file(entry.path());
-      files[entry.path().filename().string()] = {{"size", content.size()},
-                                                 {"xxh3", hash_of(content)}};
-    }
-    write_file(partial / "manifest.json", json{{"round", round}, {"files", files}}.dump(2) + "\n");
-    // One that is there already is left over: a run goes on from CURRENT, to later rounds.
-    fs::remove_all(checkpoints / name);
-    fs::rename(partial, checkpoints / name);
-    sync_directory(checkpoints);
-    write_file(checkpoints / "CURRENT", name + "\n");
-    remove_old_checkpoints(checkpoints, round, kept);
-  });
-}
-
-std::optional<fs::path> RunDirectory::newest_checkpoint() const {
-  const fs::path current = checkpoints_of(root_) / "CURRENT";
-  std::error_code ignored;
-  if (!fs::exists(current, ignored)) return std::nullopt;
-  std::string name = read_file(current);
-  if (name.ends_with('\n')) name.pop_back();
-  const auto round = round_of(name);
-  if (!round) throw Failure("{} is damaged: it names no checkpoint", current.string());
-
-  const fs::path directory = checkpoints_of(root_) / name;
-  const fs::path manifest_file = directory / "manifest.json";
-  const json manifest = read_json(manifest_file);
-  try {
-    if (whole_number<std::uint64_t>(manifest.at("round")) != *round) {
-      throw Failure("{} is damaged: it is of another round", manifest_file.string());
-    }
-    for (const auto& [file, expected] : manifest.at("files").items()) {
-      check_file(directory / file, expected);
-    }
-  } catch (const json::exception& error) {
-    throw Failure("{} is damaged: {}", manifest_file.string(), error.what());
-  }
-  return directory;
 }
 
 RunManifest read_manifest(const RunDirectory& directory) {

@@ -5,19 +5,19 @@
 //   sumo/                        network and traffic for SUMO (scenarios/)
 //   log/<process>.log            one text log a process
 //   metrics/<process>.jsonl      one JSON-lines file a process (proto/metrics.h)
-//   checkpoints/<round>/         learner.safetensors, replay.safetensors, manifest.json
-//   checkpoints/CURRENT          name of the newest valid checkpoint
+//   checkpoints/<round>/         proto/checkpoints.h
 //   evaluation/                  <planner>_<seed>.json; episodes/<planner>_<seed>_<episode>.json
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include <nlohmann/json_fwd.hpp>
+
+#include "proto/failure.h"
 
 namespace corridor {
 
@@ -29,6 +29,17 @@ void write_file(const std::filesystem::path& file, std::string_view content);
 std::string read_file(const std::filesystem::path& file);
 // Throws Failure naming the file when missing or not JSON.
 nlohmann::json read_json(const std::filesystem::path& file);
+// Makes a rename or a new name in the directory survive a power failure.
+void sync_directory(const std::filesystem::path& directory);
+// Turns the standard library's error into a Failure: "cannot <what> <path>: <reason>".
+template <typename Action>
+void on_disk(const char* what, const std::filesystem::path& path, const Action& action) {
+  try {
+    action();
+  } catch (const std::filesystem::filesystem_error& error) {
+    throw Failure("cannot {} {}: {}", what, path.string(), error.code().message());
+  }
+}
 
 class RunDirectory {
  public:
@@ -37,6 +48,10 @@ class RunDirectory {
   // Throws Failure when it is missing or no run directory (no config.toml or manifest.json).
   static RunDirectory open(const std::filesystem::path& root);
 
+  // What processes that were killed left half-written. Nobody else may be using the directory
+  // (cluster/run_lock.h).
+  void remove_leftovers() const;
+
   const std::filesystem::path& root() const { return root_; }
   std::filesystem::path config() const { return root_ / "config.toml"; }
   std::filesystem::path manifest() const { return root_ / "manifest.json"; }
@@ -44,17 +59,9 @@ class RunDirectory {
   std::filesystem::path routes() const { return root_ / "sumo" / "traffic.rou.xml"; }
   std::filesystem::path log(std::string_view process) const;
   std::filesystem::path metrics(std::string_view process) const;
+  std::filesystem::path checkpoints() const { return root_ / "checkpoints"; }
   std::filesystem::path evaluation() const { return root_ / "evaluation"; }
   std::filesystem::path episodes() const { return root_ / "evaluation" / "episodes"; }
-
-  // Checkpoints. A new one is filled under a temporary name and becomes valid by `commit`.
-  std::filesystem::path begin_checkpoint(std::uint64_t round) const;  // an empty directory
-  // Writes manifest.json (round, size and XXH3 of each file), renames the directory into
-  // place, points CURRENT at it, and removes all but the newest `kept`.
-  void commit_checkpoint(std::uint64_t round, int kept) const;
-  // The checkpoint that CURRENT names, its files' sizes and hashes checked; nothing when there is
-  // none yet. Throws Failure naming the damaged file.
-  std::optional<std::filesystem::path> newest_checkpoint() const;
 
  private:
   explicit RunDirectory(std::filesystem::path root) : root_(std::move(root)) {}

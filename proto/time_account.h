@@ -10,6 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "proto/pulse.h"
+
 namespace corridor {
 
 // The parts of all processes. Those that wait are not work; the scheduler may also take the core
@@ -43,6 +45,7 @@ class TimeAccount {
   void charge(TimePart part) {
     const Clock::time_point now = Clock::now();
     spent_[static_cast<std::size_t>(part)] += now - std::exchange(mark_, now);
+    beat();
   }
 
   // Since the last `take`, or since the start.

@@ -80,9 +80,11 @@ struct ReplayRequest {
     }
 
     save :group {
-      # learner, between blocks: write everything that belongs to rounds <= the open block's into
-      # the directory (of the run directory's file system). Answer: saved.
+      # learner, between blocks: write everything that belongs to rounds <= the last block's into
+      # the directory, beside the serving (proto/checkpoints.h). To be repeated, between later
+      # blocks, until the answer says that it is complete. Answer: saved, at once.
       directory @11 :Text;      # <= 4096 bytes
+      previous @12 :Text;       # the newest checkpoint, to link to what it has already; or empty
     }
   }
 }
@@ -103,7 +105,9 @@ struct ReplayReply {
       keys @6 :Data;            # uint64: insert index, never reused
       weights @7 :Data;         # float32 importance weights, largest of the batch = 1
     }
-    saved @8 :Void;
+    saved :group {
+      complete @8 :Bool;        # all of it is on disk
+    }
   }
 }
 

@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <string>
 
+#include "proto/checkpoints.h"
 #include "proto/metrics.h"
 #include "proto/program.h"
 #include "proto/run_config.h"
@@ -20,7 +21,7 @@ int run(const std::string& root) {
   const std::string run_id = read_manifest(directory).run_id;
 
   replay::ReplayService service(config);
-  if (const auto checkpoint = directory.newest_checkpoint()) {
+  if (const auto checkpoint = Checkpoints(directory.checkpoints()).newest()) {
     service.load(*checkpoint);
     spdlog::info("resumes from {}, at round {}", checkpoint->string(), service.next_round());
   }
@@ -39,5 +40,5 @@ int main(int argc, char** argv) {
   app.add_option("RUN_DIRECTORY", root, "the run, as `corridor train` made it")->required();
   app.set_version_flag("--version", corridor::kVersion);
   CLI11_PARSE(app, argc, argv);
-  return corridor::run_program("corridor-replay", true, [&] { return run(root); });
+  return corridor::run_program("corridor-replay", [&] { return run(root); });
 }

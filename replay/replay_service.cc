@@ -2,12 +2,10 @@
 
 #include "proto/codec.h"
 #include "proto/failure.h"
-#include "proto/tensor_file.h"
 
 namespace corridor::replay {
 namespace {
 
-constexpr const char* kFile = "replay.safetensors";
 constexpr std::size_t kBatchBytesMax = 64 * 1024 * 1024;  // what proto/codec.h carries
 
 template <typename... Args>
@@ -141,13 +139,15 @@ Outcome ReplayService::answer(ClientId, const Step& request) {
 Outcome ReplayService::answer(ClientId, const Save& request) {
   if (request.directory.empty()) return refused("a checkpoint wanted in no directory");
   if (waits_) return refused("a checkpoint wanted while block {} is to open", next_round());
+  open_ = false;
   try {
-    save(request.directory);
+    if (!writer_ || writer_->directory() != request.directory) {
+      writer_.emplace(snapshot(request.previous), request.directory, request.previous);
+    }
+    return Saved{writer_->complete()};
   } catch (const Failure& failure) {
     return Refused{failure.what()};
   }
-  open_ = false;
-  return Saved{};
 }
 
 std::vector<std::uint32_t> ReplayService::awaited() const {
@@ -165,25 +165,51 @@ std::vector<std::pair<std::string, double>> ReplayService::metrics() const {
       {"replay/stale_priorities", value(store_.stale_priorities())}};
 }
 
-void ReplayService::save(const std::filesystem::path& directory) const {
-  TensorFile file;
-  admission_.save(file);
-  store_.save(file);
-  write_tensors(directory / kFile, file);
+Snapshot ReplayService::snapshot(const std::filesystem::path& previous) const {
+  Snapshot result;
+  admission_.save(result.head);
+  store_.save(result.head);
+  result.stride = store_.layout().stride();
+  if (!previous.empty()) result.files = rows_files(previous);
+  // Of the phase before, and of keys that have given way, nothing is needed any more.
+  std::erase_if(result.files,
+                [&](const RowsFile& file) { return file.end_key <= store_.oldest_key(); });
+  result.first_new_key =
+      result.files.empty() ? store_.oldest_key() : result.files.back().end_key;
+  if (result.first_new_key > store_.next_key()) {
+    throw Failure("{} has rows up to key {}, the replay up to {}: it is of another run",
+                  previous.string(), result.first_new_key, store_.next_key());
+  }
+  result.rows = store_.rows_from(result.first_new_key);
+  return result;
 }
 
-void ReplayService::load(const std::filesystem::path& directory) {
-  const std::string name = (directory / kFile).string();
-  const TensorFile file = read_tensors(name);
-  admission_.load(file, name);
+void ReplayService::load_head(const TensorFile& head, const std::string& name) {
+  admission_.load(head, name);
   if (next_round() > schedule_.rounds()) {
     throw Failure("{}: {} rounds in a run of {}; use the run's own checkpoint", name, next_round(),
                   schedule_.rounds());
   }
   begin(next_round() == 0 ? Phase::kMop : schedule_.phase_of(next_round() - 1), 0);
-  store_.load(file, name);
+  store_.load(head, name);
   waits_ = false;
   open_ = false;
+}
+
+void ReplayService::load(const std::filesystem::path& checkpoint) {
+  load_head(read_checkpoint_file(checkpoint, kReplayFile), (checkpoint / kReplayFile).string());
+  const std::vector<RowsFile> files = rows_files(checkpoint);
+  const bool covers = files.empty() ? store_.size() == 0
+                                    : files.front().first_key <= store_.oldest_key() &&
+                                          files.back().end_key == store_.next_key();
+  if (!covers) {
+    throw Failure("{} is damaged: it has not all rows with the keys {} to {}", checkpoint.string(),
+                  store_.oldest_key(), store_.next_key());
+  }
+  for (const RowsFile& file : files) {
+    store_.load_rows(file.first_key, read_checkpoint_file(checkpoint, file.name()),
+                     (checkpoint / file.name()).string());
+  }
 }
 
 }  // namespace corridor::replay

@@ -22,6 +22,7 @@
 #include "proto/settings.h"
 #include "replay/admission.h"
 #include "replay/limiter.h"
+#include "replay/snapshot.h"
 #include "replay/store.h"
 
 namespace corridor::replay {
@@ -65,11 +66,13 @@ class ReplayService {
   // Named values (proto/metrics.h) as of the last block; equal in equal runs.
   std::vector<std::pair<std::string, double>> metrics() const;
 
-  // Writes replay.safetensors into the directory: all of rounds < next_round(), nothing parked.
-  // Equal states give equal bytes. A service that loads it goes on as this one does. Both throw
-  // Failure naming the file.
-  void save(const std::filesystem::path& directory) const;
-  void load(const std::filesystem::path& directory);
+  // All of rounds < next_round(), nothing parked, but for rows that `previous` (a checkpoint of this
+  // run; empty: none) has. Equal states give equal heads and rows. Throws Failure.
+  Snapshot snapshot(const std::filesystem::path& previous) const;
+  // From a checkpoint: goes on as the one that wrote it did. Throws Failure naming the file.
+  void load(const std::filesystem::path& checkpoint);
+  // Its replay.safetensors alone: all but the rows.
+  void load_head(const TensorFile& head, const std::string& name);
 
  private:
   Outcome answer(ClientId client, const Join& request);
@@ -92,6 +95,7 @@ class ReplayService {
   Limiter limiter_;
   bool waits_ = false;  // an OpenBlock for next_round()
   bool open_ = false;   // block next_round() - 1 is
+  std::optional<SnapshotWriter> writer_;
 };
 
 }  // namespace corridor::replay

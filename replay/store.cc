@@ -163,18 +163,25 @@ void Store::prefetch(std::uint64_t slot) const {
   __builtin_prefetch(last);
 }
 
-void Store::save(TensorFile& file) const {
+std::vector<float> Store::rows_from(std::uint64_t key) const {
+  CORRIDOR_CHECK(key >= oldest_key() && key <= next_key_, "key {} of {} to {}", key, oldest_key(),
+                 next_key_);
   const std::size_t stride = layout_.stride();
   std::vector<float> rows;
+  rows.reserve((next_key_ - key) * stride);
+  for (; key < next_key_; ++key) {
+    const float* const first = row(key % capacity_);
+    rows.insert(rows.end(), first, first + stride);
+  }
+  return rows;
+}
+
+void Store::save(TensorFile& file) const {
   std::vector<float> leaves;
-  rows.reserve(size() * stride);
   leaves.reserve(size());
   for (std::uint64_t key = oldest_key(); key < next_key_; ++key) {
-    const std::uint64_t slot = key % capacity_;
-    rows.insert(rows.end(), row(slot), row(slot) + stride);
-    leaves.push_back(tree_.value(slot));
+    leaves.push_back(tree_.value(key % capacity_));
   }
-  file.tensors.insert_or_assign("rows", Tensor{{leaves.size(), stride}, std::move(rows)});
   file.put("leaves", std::move(leaves));
   file.put("first_key", std::vector{first_key_});
   file.put("next_key", std::vector{next_key_});
@@ -184,31 +191,38 @@ void Store::save(TensorFile& file) const {
 
 void Store::load(const TensorFile& file, const std::string& name) {
   CORRIDOR_CHECK(inserted() == 0, "{} rows in the way", inserted());
-  const auto& rows = file.get<float>("rows", name);
   const auto& leaves = file.get<float>("leaves", name);
   first_key_ = number(file, "first_key", name);
   next_key_ = number(file, "next_key", name);
   sampled_ = number(file, "sampled", name);
   stale_priorities_ = number(file, "stale_priorities", name);
-
-  const std::size_t stride = layout_.stride();
-  const bool fits = first_key_ <= next_key_ && leaves.size() == size() &&
-                    rows.size() == leaves.size() * stride &&
-                    std::all_of(leaves.begin(), leaves.end(),
-                                [](float value) { return std::isfinite(value) && value >= 0.0F; });
+  const bool fits = first_key_ <= next_key_ && leaves.size() == size() && are_priorities(leaves);
   if (!fits) {
     throw Failure(
-        "{}: {} floats and {} priorities for keys {} to {} of rows of {} floats, capacity {}; the "
-        "file is damaged or of another configuration, use the run's own checkpoint",
-        name, rows.size(), leaves.size(), first_key_, next_key_, stride, capacity_);
+        "{}: {} priorities for keys {} to {}, capacity {}; the file is damaged or of another "
+        "configuration, use the run's own checkpoint",
+        name, leaves.size(), first_key_, next_key_, capacity_);
   }
   slots_.clear();
-  for (std::size_t i = 0; i < leaves.size(); ++i) {
-    const std::uint64_t slot = (oldest_key() + i) % capacity_;
-    std::copy_n(rows.begin() + static_cast<std::ptrdiff_t>(i * stride), stride, row(slot));
-    slots_.push_back(slot);
-  }
+  for (std::uint64_t key = oldest_key(); key < next_key_; ++key) slots_.push_back(key % capacity_);
   tree_.set(slots_, leaves);
+}
+
+void Store::load_rows(std::uint64_t first_key, const TensorFile& file, const std::string& name) {
+  const auto& rows = file.get<float>("rows", name);
+  const std::size_t stride = layout_.stride();
+  const std::uint64_t count = rows.size() / stride;
+  if (rows.size() % stride != 0 || !are_finite(rows) || first_key > next_key_ ||
+      count > next_key_ - first_key) {
+    throw Failure("{}: {} floats are no rows of {} with keys from {} to at most {}; use an older "
+                  "checkpoint",
+                  name, rows.size(), stride, first_key, next_key_);
+  }
+  for (std::uint64_t i = 0; i < count; ++i) {
+    if (first_key + i < oldest_key()) continue;
+    std::memcpy(row((first_key + i) % capacity_), rows.data() + i * stride,
+                stride * sizeof(float));
+  }
 }
 
 }  // namespace corridor::replay

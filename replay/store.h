@@ -60,11 +60,19 @@ class Store {
   // batch's largest weight. size() >= 1 unless there is no room; importance_exponent in [0, 1].
   void sample(double importance_exponent, const Drawn& into);
 
-  // Everything but what the constructor is given: "rows" [size, stride] and "leaves" [size] from
-  // the oldest key on, "first_key", "next_key", "sampled", "stale_priorities".
+  // Keys of the rows held: [oldest_key(), next_key()).
+  std::uint64_t oldest_key() const;
+  // The rows from this key on, oldest first: [row, stride]. Keys from oldest_key() to next_key().
+  std::vector<float> rows_from(std::uint64_t key) const;
+
+  // Everything but the rows and what the constructor is given: "leaves" [size] from the oldest key
+  // on, "first_key", "next_key", "sampled", "stale_priorities".
   void save(TensorFile& file) const;
-  // Into an empty store. Throws Failure naming the file when its numbers do not fit together.
+  // Into an empty store: the same, and then the rows, in parts: those with the keys from `first_key`
+  // on; of keys that are not held, nothing. Throw Failure naming the file when its numbers do not
+  // fit together.
   void load(const TensorFile& file, const std::string& name);
+  void load_rows(std::uint64_t first_key, const TensorFile& file, const std::string& name);
 
  private:
   struct Free {
@@ -72,7 +80,6 @@ class Store {
   };
   static std::unique_ptr<float[], Free> uninitialised(std::size_t floats);
 
-  std::uint64_t oldest_key() const;
   float* row(std::uint64_t slot) const { return rows_.get() + slot * layout_.stride(); }
   void prefetch(std::uint64_t slot) const;
   void set_leaves(std::span<const float> priorities);

@@ -4,6 +4,7 @@
 // one chunk unanswered each. With --floor the same messages meet a server that answers each with
 // bytes made before, and clients that look at none: what transport alone costs.
 #include <signal.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
@@ -118,7 +119,8 @@ void answer_from_memory(Server& server, const Load& load) {
 }
 
 int serve(const Load& load, const Address& address, const std::filesystem::path& metrics_file) {
-  return run_program("replay_load's server", true, [&] {
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  return run_program("replay_load's server", [&] {
     Server server(address, kRunId);
     if (load.floor) {
       answer_from_memory(server, load);
@@ -426,7 +428,7 @@ int main(int argc, char** argv) {
   app.add_flag("--memory", remembering, "memory against capacity");
   app.add_flag("--floor", load.floor, "no work at either end");
   CLI11_PARSE(app, argc, argv);
-  return corridor::run_program("replay_load", false, [&] {
+  return corridor::run_program("replay_load", [&] {
     if (comparing) {
       compare(load, turns);
     } else if (sweeping) {

@@ -165,5 +165,5 @@ int main(int argc, char** argv) {
   app.add_option("--set", settings, "key=value, as of corridor train");
   CLI11_PARSE(app, argc, argv);
   return corridor::run_program(
-      "whole_run", false, [&] { return corridor::bench::run(scenario, actors, seed, settings); });
+      "whole_run", [&] { return corridor::bench::run(scenario, actors, seed, settings); });
 }

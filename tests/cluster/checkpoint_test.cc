@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "proto/checkpoints.h"
 #include "proto/failure.h"
 #include "tests/support/temporary_directory.h"
 
@@ -19,6 +20,8 @@ TensorFile learner() {
 TensorFile replay() {
   TensorFile file;
   file.put("priorities", std::vector<double>{0.5, 0.25});
+  file.put("leaves", std::vector<float>{0.5F, 0.25F, 1.0F});
+  file.put("next_key", std::vector<std::uint64_t>{7});
   return file;
 }
 
@@ -48,20 +51,38 @@ TEST(Fingerprint, ChangesWithEveryPartOfTheContent) {
 TEST(NewestCheckpoint, IsNothingInANewRunAndTheLastCommittedOneLater) {
   const testing_support::TemporaryDirectory temporary;
   const RunDirectory directory = RunDirectory::create(temporary.path() / "run");
+  const Checkpoints checkpoints(directory.checkpoints());
   EXPECT_FALSE(newest_checkpoint(directory));
-  for (const std::uint64_t round : {3, 7}) {
-    const auto partial = directory.begin_checkpoint(round);
+  // The rows with the keys 4, 5 and 6, divided in this way or that; key 3 has given way.
+  std::vector<std::string> fingerprints;
+  for (const std::uint64_t cut : {5, 6}) {
+    const auto partial = checkpoints.begin(cut);
     write_tensors(partial / "learner.safetensors", learner());
     write_tensors(partial / "replay.safetensors", replay());
-    directory.commit_checkpoint(round, 2);
+    for (const RowsFile& file : {RowsFile{3, cut}, RowsFile{cut, 7}}) {
+      std::vector<float> rows;
+      for (auto key = file.first_key; key < file.end_key; ++key) {
+        rows.insert(rows.end(), {static_cast<float>(key), 0.5F});
+      }
+      TensorFile part;
+      part.tensors.emplace("rows", Tensor{{rows.size() / 2, 2}, rows});
+      write_tensors(partial / file.name(), part);
+    }
+    checkpoints.commit(cut, 2);
+    const auto checkpoint = newest_checkpoint(directory);
+    ASSERT_TRUE(checkpoint);
+    EXPECT_EQ(checkpoint->rounds_done, cut + 1);
+    fingerprints.push_back(fingerprint(*checkpoint));
   }
-  const auto checkpoint = newest_checkpoint(directory);
-  ASSERT_TRUE(checkpoint);
-  EXPECT_EQ(checkpoint->rounds_done, 8u);
-  EXPECT_EQ(fingerprint(*checkpoint), fingerprint(learner(), replay()));
+  EXPECT_EQ(fingerprints[0], fingerprints[1]);
+  TensorFile whole = replay();
+  whole.tensors.emplace("rows",
+                        Tensor{{3, 2}, std::vector<float>{4.0F, 0.5F, 5.0F, 0.5F, 6.0F, 0.5F}});
+  EXPECT_EQ(fingerprints[0], fingerprint(learner(), whole));
 
+  const auto checkpoint = newest_checkpoint(directory);
   std::filesystem::resize_file(checkpoint->directory / "replay.safetensors", 20);
-  EXPECT_THROW(newest_checkpoint(directory), Failure);
+  EXPECT_THROW(fingerprint(*checkpoint), Failure);
 }
 
 }  // namespace

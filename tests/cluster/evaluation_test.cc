@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "proto/checkpoints.h"
 #include "proto/failure.h"
 #include "proto/run_config.h"
 #include "proto/schedule.h"
@@ -23,8 +24,8 @@ class Evaluation : public testing::Test {
   }
   // As after the given number of rounds.
   void put_checkpoint(std::uint64_t rounds_done) {
-    directory_.begin_checkpoint(rounds_done - 1);
-    directory_.commit_checkpoint(rounds_done - 1, 2);
+    Checkpoints(directory_.checkpoints()).begin(rounds_done - 1);
+    Checkpoints(directory_.checkpoints()).commit(rounds_done - 1, 2);
   }
   std::string failure_of(EvaluateOptions options) {
     options.run = directory_.root();

@@ -3,7 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
+
 #include "cluster/run_lock.h"
+#include "proto/checkpoints.h"
 #include "proto/failure.h"
 #include "proto/run_config.h"
 #include "proto/run_directory.h"
@@ -55,16 +58,18 @@ TEST_F(Training, ARunDirectoryThatExistsIsRefusedAndNotTouched) {
 RunDirectory make_run(const std::filesystem::path& root, std::uint64_t rounds_done) {
   RunDirectory directory = RunDirectory::create(root);
   write_file(directory.config(), to_toml(RunConfig()));
-  write_file(directory.manifest(), R"({"run_id": "0123456789abcdef0123456789abcdef"})");
-  directory.begin_checkpoint(rounds_done - 1);
-  directory.commit_checkpoint(rounds_done - 1, 2);
+  const nlohmann::json manifest = {{"run_id", "0123456789abcdef0123456789abcdef"},
+                                   {"config", to_toml(RunConfig())}};
+  write_file(directory.manifest(), manifest.dump());
+  Checkpoints(directory.checkpoints()).begin(rounds_done - 1);
+  Checkpoints(directory.checkpoints()).commit(rounds_done - 1, 2);
   return directory;
 }
 
 TEST_F(Training, ACompleteRunIsNotResumedAndThatIsNoError) {
   make_run(run_, Schedule(RunConfig()).rounds());
   testing::internal::CaptureStdout();
-  EXPECT_EQ(resume(run_, "bin/corridor"), 0);
+  EXPECT_EQ(resume({.run = run_}, "bin/corridor"), 0);
   EXPECT_THAT(testing::internal::GetCapturedStdout(),
               testing::AllOf(HasSubstr("is complete"),
                              HasSubstr("bin/corridor evaluate " + run_.string())));
@@ -73,7 +78,44 @@ TEST_F(Training, ACompleteRunIsNotResumedAndThatIsNoError) {
 TEST_F(Training, ARunThatIsGoingOnIsNotResumed) {
   const RunDirectory directory = make_run(run_, 1);
   const RunLock lock(directory);
-  EXPECT_THAT([&] { resume(run_, "corridor"); }, ThrowsMessage<Failure>(HasSubstr("is going on")));
+  EXPECT_THAT([&] { resume({.run = run_}, "corridor"); }, ThrowsMessage<Failure>(HasSubstr("is going on")));
+}
+
+TEST_F(Training, ASettingThatTheResultDependsOnIsNotChangedInTheMiddle) {
+  const RunDirectory directory = make_run(run_, Schedule(RunConfig()).rounds());
+  EXPECT_THAT([&] { resume({.run = run_, .settings = {"mop.gamma=0.5"}}, "corridor"); },
+              ThrowsMessage<Failure>(testing::AllOf(HasSubstr("mop.gamma = 0.5"),
+                                                    HasSubstr("began with"))));
+  EXPECT_EQ(read_file(directory.config()), to_toml(RunConfig()));
+  RunConfig changed;
+  changed.run.actors = 3;
+  write_file(directory.config(), to_toml(changed));
+  EXPECT_THAT([&] { resume({.run = run_}, "corridor"); },
+              ThrowsMessage<Failure>(HasSubstr("run.actors = 3: the run began with 2")));
+}
+
+TEST_F(Training, OthersAreAppliedAndStay) {
+  const RunDirectory directory = make_run(run_, Schedule(RunConfig()).rounds());
+  testing::internal::CaptureStdout();
+  EXPECT_EQ(resume({.run = run_, .settings = {"schedule.checkpoints_kept=7"}}, "corridor"), 0);
+  EXPECT_THAT(testing::internal::GetCapturedStdout(),
+              HasSubstr("schedule.checkpoints_kept = 7, where the run began with 2"));
+  EXPECT_EQ(load_run_config(directory.config()).schedule.checkpoints_kept, 7);
+}
+
+TEST_F(Training, ADamagedCheckpointIsNamedAndTheOneBeforeIsUsed) {
+  const RunDirectory directory = make_run(run_, 5);
+  const std::filesystem::path newer = Checkpoints(directory.checkpoints()).begin(7);
+  write_file(newer / "learner.safetensors", "state");
+  Checkpoints(directory.checkpoints()).commit(7, 2);
+  write_file(directory.checkpoints() / "7" / "learner.safetensors", "stale");
+  write_file(directory.root() / "config.toml.tmp-77", "half");
+  testing::internal::CaptureStdout();
+  EXPECT_THROW(resume({.run = run_}, "corridor"), Failure);  // see below
+  EXPECT_THAT(testing::internal::GetCapturedStdout(),
+              testing::AllOf(HasSubstr("7/learner.safetensors is damaged"),
+                             HasSubstr("goes on from the checkpoint of: MoP, 5 of 2736 rounds")));
+  EXPECT_FALSE(std::filesystem::exists(directory.root() / "config.toml.tmp-77"));
 }
 
 TEST_F(Training, ResumeSaysWhereItGoesOnAndWhatItRepeats) {
@@ -82,7 +124,7 @@ TEST_F(Training, ResumeSaysWhereItGoesOnAndWhatItRepeats) {
                                            "\n");
   // The checkpoint's files are made up: the programs, where they lie beside this test, refuse them.
   testing::internal::CaptureStdout();
-  EXPECT_THROW(resume(run_, "corridor"), Failure);
+  EXPECT_THROW(resume({.run = run_}, "corridor"), Failure);
   EXPECT_THAT(testing::internal::GetCapturedStdout(),
               HasSubstr("goes on from the checkpoint of: MoP, 5 of 2736 rounds, 2,560 of 1,400,832 "
                         "steps; 1,024 steps after it are repeated"));

@@ -5,6 +5,7 @@
 #include <csignal>
 #include <thread>
 
+#include "proto/checkpoints.h"
 #include "proto/random.h"
 #include "tests/e2e/run_support.h"
 
@@ -24,6 +25,10 @@ void expect_failure(const std::vector<std::string>& command, const std::vector<s
   const std::string text = result.output.substr(error);
   EXPECT_EQ(lines_in(text), 1) << result.output;
   for (const auto& hint : hints) EXPECT_NE(text.find(hint), std::string::npos) << result.output;
+}
+
+fs::path newest_checkpoint(const fs::path& run) {
+  return Checkpoints(run / "checkpoints").newest().value();
 }
 
 class BadInput : public testing::Test {
@@ -165,25 +170,57 @@ TEST_F(BadInput, MissingSumoIsNamed) {
   EXPECT_FALSE(fs::exists(run));
 }
 
-TEST_F(BadInput, ATruncatedOrMissingCheckpointFileIsNamed) {
-  ASSERT_EQ(run_command(train_command(run), kDeadline_s).status, 0);
-  std::ifstream current(run / "checkpoints" / "CURRENT");
-  std::string name;
-  current >> name;
-  const fs::path directory = run / "checkpoints" / name;
-  for (const char* file : {"learner.safetensors", "replay.safetensors"}) {
-    const fs::path path = directory / file;
-    const auto size = fs::file_size(path);
-    fs::copy_file(path, temporary.path() / "copy", fs::copy_options::overwrite_existing);
-    fs::resize_file(path, size / 2);
-    expect_failure({kCorridor, "fingerprint", run}, {file});
-    expect_failure({kCorridor, "evaluate", run, "--steps", "10"}, {file});
-    expect_failure({kCorridor, "resume", run}, {file});
-    fs::remove(path);
-    expect_failure({kCorridor, "fingerprint", run}, {file});
-    fs::copy_file(temporary.path() / "copy", path);
+// Truncated, flipped or missing.
+void damage(const fs::path& file, int how) {
+  const auto size = fs::file_size(file);
+  if (how == 0) fs::resize_file(file, size / 2);
+  if (how == 1) {
+    std::fstream bytes(file, std::ios::in | std::ios::out | std::ios::binary);
+    bytes.seekg(static_cast<std::streamoff>(size / 2));
+    const char flipped = static_cast<char>(bytes.peek() ^ 1);
+    bytes.seekp(static_cast<std::streamoff>(size / 2));
+    bytes.put(flipped);
   }
-  EXPECT_EQ(run_command({kCorridor, "resume", run}, kDeadline_s).status, 0);
+  if (how == 2) fs::remove(file);
+}
+
+TEST_F(BadInput, ADamagedNewestCheckpointIsNamedAndTheOneBeforeIsUsed) {
+  ASSERT_EQ(run_command(train_command(run), kDeadline_s).status, 0);
+  const std::string expected = fingerprint(run);
+  const fs::path whole = temporary.path() / "whole";
+  fs::rename(run, whole);
+  // The newest checkpoint's own files; rows that the one before has too are one file on disk.
+  std::vector<std::string> own;
+  for (const auto& entry : fs::directory_iterator(newest_checkpoint(whole))) {
+    if (fs::hard_link_count(entry.path()) == 1) own.push_back(entry.path().filename());
+  }
+  ASSERT_EQ(own.size(), 4u);  // manifest, learner, replay, the newest rows
+  for (std::size_t i = 0; i < own.size(); ++i) {
+    fs::remove_all(run);
+    fs::copy(whole, run, fs::copy_options::recursive);
+    // A flipped bit of the manifest is blamed on the file whose hash it was.
+    damage(newest_checkpoint(run) / own[i], own[i] == "manifest.json" ? 0 : static_cast<int>(i) % 3);
+    expect_failure({kCorridor, "fingerprint", run}, {own[i]});
+    const CommandResult resumed = run_command({kCorridor, "resume", run}, kDeadline_s);
+    EXPECT_EQ(resumed.status, 0) << resumed.output;
+    EXPECT_NE(resumed.output.find(own[i]), std::string::npos) << resumed.output;
+    EXPECT_EQ(fingerprint(run), expected) << own[i];
+  }
+}
+
+TEST_F(BadInput, WhenEveryCheckpointIsDamagedResumeSaysSoAndChangesNothing) {
+  ASSERT_EQ(run_command(train_command(run), kDeadline_s).status, 0);
+  for (const auto& entry : fs::directory_iterator(run / "checkpoints")) {
+    damage(entry.path() / "learner.safetensors", 0);
+  }
+  for (int attempt = 0; attempt < 2; ++attempt) {
+    expect_failure({kCorridor, "resume", run}, {"no checkpoint", "learner.safetensors"});
+  }
+}
+
+TEST_F(BadInput, ASettingThatTheResultDependsOnIsRefusedOnResume) {
+  ASSERT_EQ(run_command(train_command(run), kDeadline_s).status, 0);
+  expect_failure({kCorridor, "resume", run, "--set", "bp.gamma=0.5"}, {"bp.gamma = 0.5"});
 }
 
 TEST_F(BadInput, AnActorThatDiesAtStartEndsTheRunWithItsReason) {
@@ -196,20 +233,21 @@ TEST_F(BadInput, AnActorThatDiesAtStartEndsTheRunWithItsReason) {
   expect_failure({kCorridor, "resume", run}, {"actor", "road.net.xml"});
 }
 
-TEST_F(BadInput, AKilledProcessEndsTheRunWithItsName) {
-  for (const char* program : {"corridor-actor", "corridor-learner", "corridor-replay"}) {
-    const fs::path directory = temporary.path() / program;
-    Command training(train_command(directory, {"--set", "mop.steps=1000000"}));
-    ASSERT_TRUE(training.wait_for("MoP", 60.0));
-    const auto processes = processes_with(std::string(program) + " " + directory.string());
-    ASSERT_FALSE(processes.empty());
-    kill(std::stoi(processes.front()), SIGKILL);
-    const CommandResult result = training.finish(30.0);
-    EXPECT_EQ(result.status, 1) << result.output;
-    EXPECT_NE(result.output.find(std::string(program).substr(9)), std::string::npos)
-        << result.output;
-    expect_nothing_left(directory);
+TEST_F(BadInput, AProcessThatDiesAgainAndAgainEndsTheRunWithItsName) {
+  Command training(train_command(run, {"--set", "mop.steps=1000000"}));
+  ASSERT_TRUE(training.wait_for("MoP", 60.0));
+  // Faster than anything can be done.
+  while (training.read_for(0.02)) {
+    for (const auto& process : processes_with("corridor-replay " + run.string())) {
+      kill(process.pid, SIGKILL);
+    }
   }
+  const CommandResult result = training.finish(30.0);
+  EXPECT_EQ(result.status, 1) << result.output;
+  EXPECT_NE(result.output.find("5 times in a row, without any progress in between: replay ended "
+                               "with signal 9"),
+            std::string::npos)
+      << result.output;
 }
 
 TEST_F(BadInput, AKilledLauncherTakesEverythingWithIt) {
@@ -235,12 +273,16 @@ TEST_F(BadInput, ASecondLauncherIsRefusedWhileARunGoesOn) {
   EXPECT_EQ(training.finish(30.0).status, 143);
 }
 
-TEST_F(BadInput, AFullDiskEndsTheRunWithAClearLine) {
-  // A limit on the size of files: writes fail part-way, as they do where a disk ends. The replay's
+TEST_F(BadInput, AFullDiskEndsTheRunWithAClearLineAndItGoesOnWhenThereIsRoom) {
+  const fs::path undisturbed = temporary.path() / "undisturbed";
+  ASSERT_EQ(run_command(train_command(undisturbed), kDeadline_s).status, 0);
+  // A limit on the size of files: writes fail part-way, as they do where a disk ends. The learner's
   // part of the first checkpoint is larger.
   std::vector<std::string> command = {"sh", "-c", "trap '' XFSZ; ulimit -f 400; exec \"$@\"", "sh"};
   for (const auto& argument : train_command(run)) command.push_back(argument);
-  expect_failure(command, {"replay.safetensors"});
+  expect_failure(command, {"checkpoints/"});
+  EXPECT_EQ(run_command({kCorridor, "resume", run}, kDeadline_s).status, 0);
+  EXPECT_EQ(fingerprint(run), fingerprint(undisturbed));
 }
 
 }  // namespace

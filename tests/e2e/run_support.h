@@ -12,12 +12,14 @@
 #include <vector>
 
 #include "tests/support/command.h"
+#include "tests/support/processes.h"
 #include "tests/support/temporary_directory.h"
 
 namespace corridor::e2e {
 
 using testing_support::Command;
 using testing_support::CommandResult;
+using testing_support::processes_with;
 using testing_support::run_command;
 using testing_support::TemporaryDirectory;
 
@@ -56,30 +58,15 @@ inline std::string fingerprint(const std::filesystem::path& run) {
   return result.output;
 }
 
-// Command lines of living processes that have `text` in theirs.
-inline std::vector<std::string> processes_with(const std::string& text) {
-  std::vector<std::string> found;
-  for (const auto& entry : std::filesystem::directory_iterator("/proc")) {
-    const std::string name = entry.path().filename();
-    if (name.find_first_not_of("0123456789") != std::string::npos) continue;
-    std::ifstream in(entry.path() / "cmdline", std::ios::binary);
-    std::string line((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
-    for (char& c : line) {
-      if (c == '\0') c = ' ';
-    }
-    if (line.find(text) != std::string::npos) found.push_back(name + " " + line);
-  }
-  return found;
-}
-
 // Nothing of a run may outlive its command: no process, no socket or temporary file in the run
 // directory, no shared memory.
 inline void expect_nothing_left(const std::filesystem::path& run) {
-  EXPECT_TRUE(processes_with(run.string()).empty()) << processes_with(run.string()).front();
+  for (const auto& process : processes_with(run.string())) ADD_FAILURE() << process.command_line;
   if (!std::filesystem::exists(run)) return;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(run)) {
     EXPECT_FALSE(entry.is_socket()) << entry.path();
     EXPECT_EQ(entry.path().string().find(".tmp"), std::string::npos) << entry.path();
+    EXPECT_FALSE(entry.path().string().ends_with(".partial")) << entry.path();
   }
 }
 

@@ -161,7 +161,7 @@ TEST(ReplayClient, RefusesABatchOfAnotherSize) {
 TEST(ReplayClient, RefusesAnAnswerToAnotherQuestion) {
   ScriptedServer server([](const ReplayRequest&) { return Inserted{}; });
   Connection connection(server);
-  EXPECT_THROW(connection.replay.save("/nowhere"), Failure);
+  EXPECT_THROW(connection.replay.save("/nowhere", ""), Failure);
 }
 
 }  // namespace

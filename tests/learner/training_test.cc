@@ -25,17 +25,29 @@ struct Place {
   testing_support::TemporaryDirectory temporary;
   RunDirectory directory = RunDirectory::create(temporary.path() / "run");
 
-  TensorFile newest(const char* file) const {
-    return read_tensors(directory.newest_checkpoint().value() / file);
+  std::filesystem::path newest() const {
+    return Checkpoints(directory.checkpoints()).newest().value();
+  }
+  TensorFile newest(const std::string& file) const { return read_checkpoint_file(newest(), file); }
+  // The replay's, however its rows are divided among files.
+  TensorFile replay() const {
+    TensorFile all = newest("replay.safetensors");
+    std::vector<float> rows;
+    for (const RowsFile& file : rows_files(newest())) {
+      const TensorFile part = newest(file.name());
+      const auto& values = part.get<float>("rows", "replay");
+      rows.insert(rows.end(), values.begin(), values.end());
+    }
+    all.put("rows", std::move(rows));
+    return all;
   }
   LearnerState state() const { return load_state(small_config(), directory); }
 };
 
 void expect_same_end(const Place& a, const Place& b) {
-  EXPECT_EQ(a.directory.newest_checkpoint()->filename(),
-            b.directory.newest_checkpoint()->filename());
+  EXPECT_EQ(a.newest().filename(), b.newest().filename());
   EXPECT_TRUE(a.newest("learner.safetensors") == b.newest("learner.safetensors"));
-  EXPECT_TRUE(a.newest("replay.safetensors") == b.newest("replay.safetensors"));
+  EXPECT_TRUE(a.replay() == b.replay());
 }
 
 TEST(Training, TrainsBothPhasesToTheEnd) {

@@ -45,11 +45,11 @@ std::vector<ReplayRequest> replay_requests() {
           OpenBlock{1ULL << 40},
           Step{{5, ~0ULL, 0}, {0.0F, 1.5F, 1e30F}, 64, 0.4},
           Step{},
-          Save{"/runs/x/checkpoints/5.partial"}};
+          Save{"/runs/x/checkpoints/5.partial", "/runs/x/checkpoints/4"}};
 }
 std::vector<ReplayReply> replay_replies() {
   return {Joined{4, {2, std::vector<std::uint8_t>(999, 17)}}, Joined{}, Inserted{}, Opened{4},
-          Batch{2, floats(14), {8, 9}, {1.0F, 0.25F}},        Batch{},  Saved{}};
+          Batch{2, floats(14), {8, 9}, {1.0F, 0.25F}},        Batch{},  Saved{true}};
 }
 std::vector<LearnerRequest> learner_requests() {
   return {WeightsWanted{6}, SelectionOutcome{1, 2, 3, -4.5, 6}};

@@ -1,7 +1,6 @@
 #include "proto/program.h"
 
 #include <gtest/gtest.h>
-#include <poll.h>
 #include <spdlog/spdlog.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -9,6 +8,7 @@
 #include <csignal>
 
 #include "proto/failure.h"
+#include "proto/pulse.h"
 
 // run_program changes the process's signals and logger, so each test runs it in a process of its
 // own.
@@ -18,7 +18,7 @@ namespace {
 using testing::ExitedWithCode;
 
 [[noreturn]] void run(const std::function<int()>& body) {
-  std::exit(run_program("corridor-test", false, body));
+  std::exit(run_program("corridor-test", body));
 }
 
 TEST(ProgramDeathTest, TheBodysStatusIsTheProcesss) {
@@ -44,7 +44,7 @@ TEST(ProgramDeathTest, SignalsAskToStopAndDoNotEndTheProcess) {
                   std::raise(SIGPIPE);
                   return stop_requested() ? 0 : 2;
                 }),
-                ExitedWithCode(0), "");
+                ExitedWithCode(128 + signal), "");
   }
 }
 
@@ -56,32 +56,24 @@ TEST(ProgramDeathTest, LogLinesHaveTimeNameLevelAndText) {
               ExitedWithCode(0), "^[0-9-]+ [0-9:.]+ corridor-test info round 3\n$");
 }
 
-TEST(Program, ThatDiesWithItsParentIsAskedToStop) {
-  int pipe_ends[2];
-  ASSERT_EQ(pipe(pipe_ends), 0);
-  const pid_t parent = fork();
-  if (parent == 0) {
-    if (fork() == 0) {
-      const int status = run_program("orphan", true, [&] {
-        write(pipe_ends[1], "r", 1);  // ready: the parent may die
-        while (!stop_requested()) poll(nullptr, 0, 10);
-        return 0;
-      });
-      write(pipe_ends[1], status == 0 ? "s" : "f", 1);
-      _exit(0);
-    }
-    char ready = 0;
-    read(pipe_ends[0], &ready, 1);
-    _exit(ready == 'r' ? 0 : 1);
+TEST(ProgramDeathTest, ItsStarterSeesItsPulse) {
+  Pulse pulse;
+  EXPECT_EQ(pulse.beats(), 0u);
+  const pid_t child = fork();
+  if (child == 0) {
+    const std::string text = pulse.environment();
+    putenv(const_cast<char*>(text.c_str()));
+    run([] {
+      for (int i = 0; i < 10; ++i) stop_requested();
+      return getenv("CORRIDOR_PULSE") == nullptr ? 0 : 2;
+    });
   }
   int status = -1;
-  waitpid(parent, &status, 0);
+  waitpid(child, &status, 0);
   EXPECT_EQ(status, 0);
-  char result = 0;
-  EXPECT_EQ(read(pipe_ends[0], &result, 1), 1);
-  EXPECT_EQ(result, 's');
-  close(pipe_ends[0]);
-  close(pipe_ends[1]);
+  EXPECT_EQ(pulse.beats(), 10u);
+  beat();
+  EXPECT_EQ(pulse.beats(), 10u) << "of another process";
 }
 
 }  // namespace

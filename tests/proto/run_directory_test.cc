@@ -5,7 +5,6 @@
 #include <sys/resource.h>
 
 #include <csignal>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "proto/settings.h"
@@ -19,12 +18,6 @@ namespace fs = std::filesystem;
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::UnorderedElementsAre;
-
-// Without write_file's cost; removed first, since some file systems flush what is overwritten.
-void damage(const fs::path& file, const std::string& content) {
-  fs::remove(file);
-  std::ofstream(file, std::ios::binary) << content;
-}
 
 std::vector<std::string> names_in(const fs::path& directory) {
   std::vector<std::string> names;
@@ -97,13 +90,6 @@ class Runs : public testing::Test {
  protected:
   RunDirectory create() const { return RunDirectory::create(root_); }
 
-  static void add_checkpoint(const RunDirectory& run, std::uint64_t round, int kept = 2) {
-    const fs::path partial = run.begin_checkpoint(round);
-    write_file(partial / "learner.safetensors", "learner " + std::to_string(round));
-    write_file(partial / "replay.safetensors", "replay " + std::to_string(round));
-    run.commit_checkpoint(round, kept);
-  }
-
   testing_support::TemporaryDirectory directory_;
   fs::path root_ = directory_.path() / "runs" / "one";
 };
@@ -133,87 +119,6 @@ TEST_F(Runs, NeedAConfigAndAManifestToBeOpened) {
               HasSubstr("manifest.json is missing"));
   write_file(run.manifest(), "{}");
   EXPECT_EQ(RunDirectory::open(root_).root(), root_);
-}
-
-TEST_F(Runs, HaveNoCheckpointAtFirst) { EXPECT_EQ(create().newest_checkpoint(), std::nullopt); }
-
-TEST_F(Runs, CommittedCheckpointsAreFoundAndOldOnesRemoved) {
-  const RunDirectory run = create();
-  for (const std::uint64_t round : {7, 9, 10, 100}) add_checkpoint(run, round);
-  EXPECT_EQ(run.newest_checkpoint(), root_ / "checkpoints" / "100");
-  EXPECT_EQ(read_file(*run.newest_checkpoint() / "replay.safetensors"), "replay 100");
-  EXPECT_THAT(names_in(root_ / "checkpoints"), UnorderedElementsAre("10", "100", "CURRENT"));
-}
-
-TEST_F(Runs, AnUncommittedCheckpointDoesNotCount) {
-  const RunDirectory run = create();
-  add_checkpoint(run, 7);
-  write_file(run.begin_checkpoint(9) / "learner.safetensors", "half");
-  EXPECT_EQ(run.newest_checkpoint(), root_ / "checkpoints" / "7");
-  EXPECT_THAT(names_in(run.begin_checkpoint(9)), testing::IsEmpty());
-  add_checkpoint(run, 11);
-  EXPECT_THAT(names_in(root_ / "checkpoints"), UnorderedElementsAre("7", "11", "CURRENT"));
-}
-
-TEST_F(Runs, GoneBackToAnEarlierCheckpointTheyDropTheLaterOnes) {
-  const RunDirectory run = create();
-  for (const std::uint64_t round : {7, 9}) add_checkpoint(run, round);
-  write_file(root_ / "checkpoints" / "CURRENT", "7\n");
-  EXPECT_EQ(run.newest_checkpoint(), root_ / "checkpoints" / "7");
-  add_checkpoint(run, 8);
-  EXPECT_EQ(run.newest_checkpoint(), root_ / "checkpoints" / "8");
-  EXPECT_THAT(names_in(root_ / "checkpoints"), UnorderedElementsAre("7", "8", "CURRENT"));
-}
-
-TEST_F(Runs, ADamagedCheckpointFileIsNamed) {
-  const RunDirectory run = create();
-  for (const char* name : {"learner.safetensors", "replay.safetensors"}) {
-    add_checkpoint(run, 7);
-    const fs::path file = root_ / "checkpoints" / "7" / name;
-    const std::string content = read_file(file);
-    const auto expect_named = [&] {
-      EXPECT_THAT(failure_of([&] { run.newest_checkpoint(); }), HasSubstr(file.string()));
-    };
-    for (std::size_t size = 0; size < content.size(); ++size) {
-      damage(file, content.substr(0, size));
-      expect_named();
-      std::string flipped = content;
-      flipped[size] ^= 1;
-      damage(file, flipped);
-      expect_named();
-    }
-    fs::remove(file);
-    expect_named();
-  }
-}
-
-TEST_F(Runs, ADamagedCheckpointManifestIsNamed) {
-  const RunDirectory run = create();
-  add_checkpoint(run, 7);
-  const fs::path checkpoint = root_ / "checkpoints" / "7";
-  const std::string content = read_file(checkpoint / "manifest.json");
-  for (std::size_t size = 0; size + 2 < content.size(); ++size) {  // "}\n"
-    damage(checkpoint / "manifest.json", content.substr(0, size));
-    EXPECT_THAT(failure_of([&] { run.newest_checkpoint(); }), HasSubstr("manifest.json"));
-  }
-  for (std::size_t i = 0; i < content.size(); ++i) {
-    std::string flipped = content;
-    flipped[i] ^= 2;
-    if (std::isspace(content[i]) && std::isspace(flipped[i])) continue;
-    damage(checkpoint / "manifest.json", flipped);
-    EXPECT_THAT(failure_of([&] { run.newest_checkpoint(); }), HasSubstr(checkpoint.string())) << i;
-  }
-  fs::remove(checkpoint / "manifest.json");
-  EXPECT_THAT(failure_of([&] { run.newest_checkpoint(); }), HasSubstr("manifest.json"));
-}
-
-TEST_F(Runs, ADamagedCurrentIsNamed) {
-  const RunDirectory run = create();
-  add_checkpoint(run, 7);
-  for (const char* text : {"", "\n", "8\n", "7x\n", "../7\n", "-7", "99999999999999999999999\n"}) {
-    write_file(root_ / "checkpoints" / "CURRENT", text);
-    EXPECT_THAT(failure_of([&] { run.newest_checkpoint(); }), HasSubstr("checkpoints/")) << text;
-  }
 }
 
 TEST_F(Runs, TheManifestsRunIdIsChecked) {

@@ -118,7 +118,7 @@ TEST_F(TensorFiles, HeadersThatLieAreRefused) {
   EXPECT_THAT(lie(entry("w", "F32", "[1]", "[0,8]")), HasSubstr("outside"));
   EXPECT_THAT(lie(entry("w", "F32", "[1]", "[4,0]")), HasSubstr("outside"));
   EXPECT_THAT(lie(entry("w", "F32", "[1]", "[0,18446744073709551615]")), HasSubstr("outside"));
-  EXPECT_THAT(lie(entry("w", "F32", "[-1]", "[0,4]")), HasSubstr("shape"));
+  EXPECT_THAT(lie(entry("w", "F32", "[-1]", "[0,4]")), HasSubstr("whole number"));
   EXPECT_THAT(lie(entry("w", "F16", "[2]", "[0,4]")), HasSubstr("type F16"));
   EXPECT_THAT(lie(entry("w", "U8", "[3]", "[0,3]")), HasSubstr("4 bytes of data"));
   EXPECT_THAT(lie(entry("w", "F32", "[1]", "[0,4]") + "," + entry("v", "F32", "[1]", "[0,4]")),

@@ -183,11 +183,13 @@ TEST(StoreTest, ARestoredStoreDrawsTheSameBits) {
   for (int chunk = 0; chunk < 5; ++chunk) insert(store, skewed_priorities(30), 30.0F * chunk);
   const Batch batch = sample(store, 16, 0.5);
   store.update(batch.keys, skewed_priorities(16));
-  TensorFile file;
+  TensorFile file, rows;
   store.save(file);
+  rows.put("rows", store.rows_from(store.oldest_key()));
 
   Store restored = make_store(settings(64, 0.6, 1e-3));
   restored.load(file, "x");
+  restored.load_rows(store.oldest_key(), rows, "x");
   TensorFile again;
   restored.save(again);
   EXPECT_EQ(again, file);
@@ -208,7 +210,7 @@ TEST(StoreTest, ADamagedCheckpointIsAFailure) {
   store.save(good);
   const auto load = [&](const TensorFile& file) { make_store(settings(8)).load(file, "x"); };
   EXPECT_NO_THROW(load(good));
-  for (const char* name : {"rows", "leaves", "next_key", "first_key", "sampled"}) {
+  for (const char* name : {"leaves", "next_key", "first_key", "sampled"}) {
     TensorFile damaged = good;
     damaged.tensors.erase(name);
     EXPECT_THROW(load(damaged), Failure) << name;
@@ -219,9 +221,19 @@ TEST(StoreTest, ADamagedCheckpointIsAFailure) {
   TensorFile leaves = good;
   leaves.put("leaves", std::vector<float>{1.0F, std::nanf(""), 1.0F});
   EXPECT_THROW(load(leaves), Failure);
-  TensorFile rows = good;
-  rows.put("rows", std::vector<float>(14));
-  EXPECT_THROW(load(rows), Failure);
+  Store restored = make_store(settings(8));
+  restored.load(good, "x");
+  const std::vector<float> whole = store.rows_from(0);
+  const auto load_rows = [&](std::uint64_t first_key, const std::vector<float>& values) {
+    TensorFile rows;
+    rows.put("rows", values);
+    restored.load_rows(first_key, rows, "x");
+  };
+  EXPECT_NO_THROW(load_rows(0, whole));
+  EXPECT_THROW(load_rows(1, whole), Failure);
+  EXPECT_THROW(load_rows(4, {}), Failure);
+  EXPECT_THROW(load_rows(0, std::vector<float>(whole.size() - 1)), Failure);
+  EXPECT_THROW(load_rows(0, std::vector<float>(whole.size(), std::nanf(""))), Failure);
   // Of a larger capacity.
   EXPECT_THROW(make_store(settings(2)).load(good, "x"), Failure);
 }

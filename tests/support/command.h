@@ -65,6 +65,15 @@ class Command {
     return true;
   }
 
+  // Reads for so long; false when the program ends first.
+  bool read_for(double seconds) {
+    const auto deadline = deadline_in(seconds);
+    while (Clock::now() < deadline) {
+      if (!read_some(deadline)) return false;
+    }
+    return true;
+  }
+
   // Waits for the end. A program that has not ended by the deadline is killed: status 137.
   CommandResult finish(double seconds) {
     const auto deadline = deadline_in(seconds);

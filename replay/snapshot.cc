@@ -1,0 +1,51 @@
+#include "replay/snapshot.h"
+
+#include <chrono>
+#include <utility>
+
+#include "proto/failure.h"
+#include "proto/run_directory.h"
+
+namespace corridor::replay {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Some file systems have no links.
+void link_or_copy(const fs::path& from, const fs::path& to) {
+  std::error_code error;
+  fs::create_hard_link(from, to, error);
+  if (!error) return;
+  on_disk("copy to", to, [&] { write_file(to, read_file(from)); });
+}
+
+}  // namespace
+
+void write(const Snapshot& snapshot, const fs::path& directory, const fs::path& previous) {
+  for (const RowsFile& file : snapshot.files) {
+    link_or_copy(previous / file.name(), directory / file.name());
+  }
+  if (!snapshot.rows.empty()) {
+    const std::size_t count = snapshot.rows.size() / snapshot.stride;
+    TensorFile file;
+    file.tensors.emplace("rows", Tensor{{count, snapshot.stride}, snapshot.rows});
+    const RowsFile place{snapshot.first_new_key, snapshot.first_new_key + count};
+    write_tensors(directory / place.name(), file);
+  }
+  write_tensors(directory / kReplayFile, snapshot.head);
+}
+
+SnapshotWriter::SnapshotWriter(Snapshot snapshot, fs::path directory, fs::path previous)
+    : directory_(std::move(directory)),
+      writing_(std::async(std::launch::async,
+                          [snapshot = std::move(snapshot), directory = directory_,
+                           previous = std::move(previous)] { write(snapshot, directory, previous); })) {}
+
+bool SnapshotWriter::complete() {
+  if (!writing_.valid()) return true;
+  if (writing_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return false;
+  writing_.get();
+  return true;
+}
+
+}  // namespace corridor::replay

@@ -1,0 +1,45 @@
+// The replay's part of a checkpoint (proto/checkpoints.h), and the thread that writes it.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <future>
+#include <vector>
+
+#include "proto/checkpoints.h"
+#include "proto/tensor_file.h"
+
+namespace corridor::replay {
+
+// What the replay is between two blocks, as a value of its own, but for rows that are on disk already.
+struct Snapshot {
+  TensorFile head;                   // replay.safetensors
+  std::vector<RowsFile> files;       // of an earlier checkpoint, ascending
+  std::uint64_t first_new_key = 0;   // what follows them
+  std::vector<float> rows;           // from first_new_key on: [row, stride]; may be none
+  std::size_t stride = 0;
+};
+
+inline constexpr const char* kReplayFile = "replay.safetensors";
+
+// Links the files, which `previous` has, and writes the rest: on disk when it returns. Throws
+// Failure.
+void write(const Snapshot& snapshot, const std::filesystem::path& directory,
+           const std::filesystem::path& previous);
+
+// `write` in a thread of its own. The destructor waits for it.
+class SnapshotWriter {
+ public:
+  SnapshotWriter(Snapshot snapshot, std::filesystem::path directory,
+                 std::filesystem::path previous);
+
+  const std::filesystem::path& directory() const { return directory_; }
+  // Throws the Failure of `write`, once.
+  bool complete();
+
+ private:
+  std::filesystem::path directory_;
+  std::future<void> writing_;
+};
+
+}  // namespace corridor::replay

@@ -1,0 +1,34 @@
+// Living processes, as /proc shows them.
+#pragma once
+
+#include <sys/types.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+namespace corridor::testing_support {
+
+struct Process {
+  pid_t pid = 0;
+  std::string command_line;
+};
+
+// Those that have `text` in their command line, which no zombie has.
+inline std::vector<Process> processes_with(const std::string& text) {
+  std::vector<Process> found;
+  for (const auto& entry : std::filesystem::directory_iterator("/proc")) {
+    const std::string name = entry.path().filename();
+    if (name.find_first_not_of("0123456789") != std::string::npos) continue;
+    std::ifstream in(entry.path() / "cmdline", std::ios::binary);
+    std::string line((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
+    for (char& c : line) {
+      if (c == '\0') c = ' ';
+    }
+    if (line.find(text) != std::string::npos) found.push_back({std::stoi(name), line});
+  }
+  return found;
+}
+
+}  // namespace corridor::testing_support
