@@ -1,8 +1,10 @@
 #include "cluster/checkpoint.h"
 
+#include <algorithm>
 #include <span>
 
 #include "proto/checkpoints.h"
+#include "proto/failure.h"
 #include "proto/hash.h"
 
 namespace corridor::cluster {
@@ -40,8 +42,12 @@ TensorFile whole_replay(const std::filesystem::path& checkpoint) {
     const auto& values = part.get<float>("rows", file.name());
     stride = part.tensors.at("rows").shape.back();
     const std::uint64_t given_way = oldest_key > file.first_key ? oldest_key - file.first_key : 0;
-    rows.insert(rows.end(), values.begin() + static_cast<std::ptrdiff_t>(given_way * stride),
-                values.end());
+    const std::size_t skipped = std::min<std::size_t>(given_way * stride, values.size());
+    rows.insert(rows.end(), values.begin() + static_cast<std::ptrdiff_t>(skipped), values.end());
+  }
+  if (rows.size() != (next_key - oldest_key) * stride) {
+    throw Failure("{} is damaged: it has not all rows with the keys {} to {}", checkpoint.string(),
+                  oldest_key, next_key);
   }
   replay.tensors.insert_or_assign("rows", Tensor{{next_key - oldest_key, stride}, std::move(rows)});
   return replay;

@@ -75,7 +75,7 @@ void read_requests(std::string_view bytes) {
     const ClientId client{who < 128 ? Role::kActor : Role::kLearner, who % 4u};
     decode_or_refuse([&] {
       ReplayRequest request = decode_replay_request(bytes_of(message));
-      if (std::holds_alternative<Save>(request)) return;  // files of any name
+      if (std::holds_alternative<Save>(request)) return;  // which writes files of any name
       service.handle(client, std::move(request));
       service.try_open();
     });
@@ -94,6 +94,10 @@ void read_checkpoint(std::string_view bytes) {
   read_or_fail([&] {
     const TensorFile file = parse_tensors(bytes, "fuzz");
     read_or_fail([&] { learner::from_tensors(file, config, "fuzz"); });
+    read_or_fail([&] { replay::ReplayService(config).load_head(file, "fuzz"); });
+    replay::Store store(config.phase(Phase::kMop), RowLayout{2}, 1, Phase::kMop, 0);
+    store.insert(std::vector<float>(3 * store.layout().stride()), std::vector<float>(3));
+    read_or_fail([&] { store.load_rows(0, file, "fuzz"); });
   });
 }
 
