@@ -234,11 +234,16 @@ void Training::checkpoint_now() {
 }
 
 void Training::finish_checkpoint() {
+  const Clock::time_point start = Clock::now();
   while (checkpointer_.busy()) {
+    if (Clock::now() - start > kHangs) {
+      throw Failure("a checkpoint is not complete after {} min: is the disk of {} alive?",
+                    kHangs.count(), around_.directory.root().string());
+    }
     around_.publisher.service(kGlance);
     checkpointer_.advance();
+    around_.time.charge(TimePart::kCheckpoint);
   }
-  around_.time.charge(TimePart::kCheckpoint);
 }
 
 void Training::report(std::uint64_t round, const Opened& opened, const BlockResult& result) {

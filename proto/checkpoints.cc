@@ -10,6 +10,7 @@
 #include "proto/failure.h"
 #include "proto/hash.h"
 #include "proto/json_numbers.h"
+#include "proto/pulse.h"
 #include "proto/run_directory.h"
 
 namespace corridor {
@@ -178,6 +179,7 @@ std::uint64_t checkpoint_round(const fs::path& checkpoint) {
 }
 
 TensorFile read_checkpoint_file(const fs::path& checkpoint, const std::string& name) {
+  beat();  // of many files, one after the other
   const json files = files_of(checkpoint);
   const fs::path file = checkpoint / name;
   if (!files.contains(name)) {

@@ -273,7 +273,44 @@ TEST_F(BadInput, ASecondLauncherIsRefusedWhileARunGoesOn) {
   EXPECT_EQ(training.finish(30.0).status, 143);
 }
 
-TEST_F(BadInput, AFullDiskEndsTheRunWithAClearLineAndItGoesOnWhenThereIsRoom) {
+TEST_F(BadInput, AFullOrReadOnlyDiskEndsTheRunWithAClearLineAndItGoesOnWhenItCan) {
+  // A file system of its own, which only a process that may mount can have.
+  const fs::path disk = temporary.path() / "disk";
+  fs::create_directory(disk);
+  const std::string mount = "mount -t tmpfs -o size=";
+  const auto in_namespace = [](const std::string& script) {
+    return std::vector<std::string>{"unshare", "-m", "sh", "-c", script, "sh"};
+  };
+  if (run_command(in_namespace(mount + "1m none " + disk.string()), 10.0).status != 0) {
+    GTEST_SKIP() << "may not mount";
+  }
+  const fs::path undisturbed = temporary.path() / "undisturbed";
+  ASSERT_EQ(run_command(train_command(undisturbed), kDeadline_s).status, 0);
+
+  const std::string resume = kCorridor + " resume " + (disk / "run").string();
+  const std::string remount = "mount -o remount,";
+  const std::string again = resume + "; echo \"status $?\"; ";
+  std::vector<std::string> command = in_namespace(
+      mount + "1m none " + disk.string() + "; \"$@\"; echo \"status $?\"; " + again + remount +
+      "size=100m,ro " + disk.string() + "; " + again + remount + "rw " + disk.string() + "; " + again +
+      kCorridor + " fingerprint " + (disk / "run").string());
+  for (const auto& argument : train_command(disk / "run")) command.push_back(argument);
+  const CommandResult result = run_command(command, kDeadline_s);
+
+  std::vector<std::string> errors;
+  std::istringstream lines(result.output);
+  std::string last;
+  for (std::string line; std::getline(lines, line); last = line) {
+    if (line.find("error: ") != std::string::npos) errors.push_back(line);
+  }
+  ASSERT_EQ(errors.size(), 3u) << result.output;
+  EXPECT_NE(errors[0].find("No space left on device"), std::string::npos) << errors[0];
+  EXPECT_NE(errors[1].find("No space left on device"), std::string::npos) << errors[1];
+  EXPECT_NE(errors[2].find("Read-only file system"), std::string::npos) << errors[2];
+  EXPECT_EQ(last + "\n", fingerprint(undisturbed)) << result.output;
+}
+
+TEST_F(BadInput, AFileSizeLimitEndsTheRunWithAClearLineAndItGoesOnWithoutIt) {
   const fs::path undisturbed = temporary.path() / "undisturbed";
   ASSERT_EQ(run_command(train_command(undisturbed), kDeadline_s).status, 0);
   // A limit on the size of files: writes fail part-way, as they do where a disk ends. The learner's
