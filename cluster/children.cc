@@ -62,8 +62,8 @@ std::vector<char*> pointers(std::vector<std::string>& texts) {
   _exit(127);
 }
 
-// ": <the last line that names an error>" of what the process wrote; when there is none and it ended
-// by itself, the last line.
+// ": <the last line that names an error>" of what the process wrote; when there is none and it
+// ended by itself, the last line.
 std::string last_words(const Ended& ended) {
   std::ifstream log(ended.log);
   log.seekg(static_cast<std::streamoff>(ended.log_start));

@@ -2,14 +2,14 @@
 // still there when the object goes is killed; when this process dies, the kernel kills them.
 #pragma once
 
+#include <sys/types.h>
+
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <list>
 #include <optional>
 #include <string>
-
-#include <sys/types.h>
 
 #include "cluster/plan.h"
 #include "proto/pulse.h"

@@ -139,16 +139,12 @@ int supervise(const RunConfig& config, const RunDirectory& directory, std::uint6
   monitor.tick();
 
   const std::uint64_t rounds = rounds_done(directory);
-  const std::string how_to_go_on =
-      fmt::format("resume with {} resume {}", program, directory.root().string());
   if (ending.signal != 0) {
-    fmt::print("stopped at the checkpoint of {}; {}\n", position(schedule, rounds), how_to_go_on);
+    fmt::print("stopped at the checkpoint of {}; resume with {} resume {}\n",
+               position(schedule, rounds), program, directory.root().string());
     return 128 + ending.signal;
   }
-  if (rounds < schedule.rounds()) {
-    throw Failure("the learner was told to stop by someone else, at the checkpoint of {}; {}",
-                  position(schedule, rounds), how_to_go_on);
-  }
+  CORRIDOR_CHECK(rounds == schedule.rounds(), "{} of {}", rounds, schedule.rounds());
   fmt::print("training is complete after {}: {}\n", duration_text(monotonic_s() - start_s),
              position(schedule, rounds));
   print_what_comes_next(directory, program);
@@ -158,9 +154,14 @@ int supervise(const RunConfig& config, const RunDirectory& directory, std::uint6
 // Keys that may change in the middle of a run: the others decide its result.
 bool may_change(std::string_view key) {
   constexpr std::string_view kTables[] = {"evaluation."};
-  constexpr std::string_view kKeys[] = {
-      "schedule.checkpoint_every_steps", "schedule.checkpoints_kept", "run.transport", "run.host",
-      "run.replay_port", "run.learner_port", "run.peer_timeout_s", "run.delay_ms_max"};
+  constexpr std::string_view kKeys[] = {"schedule.checkpoint_every_steps",
+                                        "schedule.checkpoints_kept",
+                                        "run.transport",
+                                        "run.host",
+                                        "run.replay_port",
+                                        "run.learner_port",
+                                        "run.peer_timeout_s",
+                                        "run.delay_ms_max"};
   return std::any_of(std::begin(kTables), std::end(kTables),
                      [&](std::string_view table) { return key.starts_with(table); }) ||
          std::find(std::begin(kKeys), std::end(kKeys), key) != std::end(kKeys);
@@ -172,9 +173,10 @@ RunConfig changed_config(const ResumeOptions& options, const RunDirectory& direc
   const RunConfig config = load_run_config(directory.config(), options.settings);
   for (const ChangedKey& key : changed_keys(at_start, config)) {
     if (may_change(key.name)) continue;
-    throw Failure("{} = {}: the run began with {}, and its result depends on it; put that back, or "
-                  "train anew",
-                  key.name, key.now, key.before);
+    throw Failure(
+        "{} = {}: the run began with {}, and its result depends on it; put that back, or "
+        "train anew",
+        key.name, key.now, key.before);
   }
   for (const ChangedKey& key : changed_keys(at_start, config)) {
     fmt::print("{} = {}, where the run began with {}\n", key.name, key.now, key.before);
@@ -196,6 +198,7 @@ int train(const TrainOptions& options, const std::string& program) {
   const RunDirectory& directory = run.directory();
   const RunLock lock(directory);
   scenarios::write_sumo_files(config, directory.network().parent_path());
+  for (const auto& file : {directory.network(), directory.routes()}) sync_file(file);
   write_file(directory.config(), to_toml(config));
   write_file(directory.manifest(),
              describe_run(draw_run_id(), config, options.scenario).dump(2) + "\n");

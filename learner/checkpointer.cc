@@ -25,11 +25,11 @@ void Checkpointer::begin(const LearnerState& state) {
   directory_ = checkpoints_.begin(round_);
   replay_saved_ = {};
   replay_is_saved_ = false;
-  writing_ = std::async(
-      std::launch::async,
-      [tensors = to_tensors(state, config_), directory = directory_, checkpoints = checkpoints_,
-       round = round_, kept = config_.schedule.checkpoints_kept,
-       replay_saved = replay_saved_.get_future()]() mutable {
+  writing_ =
+      std::async(std::launch::async, [tensors = to_tensors(state, config_), directory = directory_,
+                                      checkpoints = checkpoints_, round = round_,
+                                      kept = config_.schedule.checkpoints_kept,
+                                      replay_saved = replay_saved_.get_future()]() mutable {
         write_tensors(directory / kLearnerFile, tensors);
         replay_saved.get();
         checkpoints.commit(round, kept);
@@ -52,9 +52,9 @@ void Checkpointer::advance() {
   if (writing_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
   writing_.get();
   using Seconds = std::chrono::duration<double>;
-  spdlog::info("checkpoint after block {}: complete after {:.2f} s, for which training waited {:.1f} ms",
-               round_, Seconds(Clock::now() - begun_).count(),
-               1000.0 * Seconds(training_waited_).count());
+  spdlog::info(
+      "checkpoint after block {}: complete after {:.2f} s, for which training waited {:.1f} ms",
+      round_, Seconds(Clock::now() - begun_).count(), 1000.0 * Seconds(training_waited_).count());
 }
 
 }  // namespace corridor::learner

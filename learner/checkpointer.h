@@ -1,5 +1,5 @@
-// Takes the run's checkpoints (proto/checkpoints.h) beside the training: what has to wait for a disk
-// does so in threads, the learner's and the replay server's. One checkpoint at a time.
+// Takes the run's checkpoints (proto/checkpoints.h) beside the training: what has to wait for a
+// disk does so in threads, the learner's and the replay server's. One checkpoint at a time.
 #pragma once
 
 #include <chrono>

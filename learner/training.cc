@@ -113,8 +113,9 @@ bool Training::train_round(std::uint64_t round) {
   }
   const std::optional<Opened> opened = await_block(round);
   if (!opened) {
-    spdlog::info("stops while block {} waits for actors: resuming goes on from the newest checkpoint",
-                 round);
+    spdlog::info(
+        "stops while block {} waits for actors: resuming goes on from the newest checkpoint",
+        round);
     return false;
   }
   const BlockResult result = train_block(round, *opened);

@@ -5,10 +5,10 @@
 //                       replay.safetensors     the replay's, but for its rows
 //                       rows-<first>-<end>     the replay's rows with the keys [first, end)
 //
-// A checkpoint is filled under another name and gets its own by a rename when everything is on disk:
-// so a directory named by a number was whole once, and the largest number is the newest. Rows never
-// change: a checkpoint writes those that came since the one before and links to the others, so that
-// each directory holds everything that it needs and an old one can be removed at any time.
+// A checkpoint is filled under another name and gets its own by a rename when everything is on
+// disk: so a directory named by a number was whole once, and the largest number is the newest. Rows
+// never change: a checkpoint writes those that came since the one before and links to the others,
+// so that each directory holds everything that it needs and an old one can be removed at any time.
 #pragma once
 
 #include <cstdint>
@@ -37,8 +37,8 @@ class Checkpoints {
 
   // Reads all of the newest one; where something in it is missing or not as its manifest says, the
   // one before, and so on. Those newer than the first whole one are renamed to <round>.damaged.
-  // Returns a line for each of them. Throws Failure, and renames nothing, when there are checkpoints
-  // but no whole one. Nobody else may be using them (cluster/run_lock.h).
+  // Returns a line for each of them. Throws Failure, and renames nothing, when there are
+  // checkpoints but no whole one. Nobody else may be using them (cluster/run_lock.h).
   std::vector<std::string> set_aside_damaged() const;
 
   // Throws Failure naming the damaged file.
@@ -51,8 +51,8 @@ class Checkpoints {
 // checkpoints/<round> -> round.
 std::uint64_t checkpoint_round(const std::filesystem::path& checkpoint);
 
-// One file of a checkpoint, checked against the manifest. Throws Failure naming it when it is missing
-// or damaged.
+// One file of a checkpoint, checked against the manifest. Throws Failure naming it when it is
+// missing or damaged.
 TensorFile read_checkpoint_file(const std::filesystem::path& checkpoint, const std::string& name);
 
 // A file of rows: tensor "rows" [end_key - first_key, stride].

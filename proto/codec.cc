@@ -117,12 +117,11 @@ Bytes encode_request(const Step& step) {
 }
 
 Bytes encode_request(const Save& save) {
-  return build<wire::ReplayRequest>(
-      save.directory.size() + save.previous.size(), [&](auto root) {
-        auto to = root.initSave();
-        to.setDirectory(text_of(save.directory, kDirectoryBytesMax));
-        to.setPrevious(text_of(save.previous, kDirectoryBytesMax));
-      });
+  return build<wire::ReplayRequest>(save.directory.size() + save.previous.size(), [&](auto root) {
+    auto to = root.initSave();
+    to.setDirectory(text_of(save.directory, kDirectoryBytesMax));
+    to.setPrevious(text_of(save.previous, kDirectoryBytesMax));
+  });
 }
 
 Bytes encode_reply(const Joined& joined) {
@@ -153,8 +152,8 @@ Bytes encode_reply(const Batch& batch) {
 }
 
 Bytes encode_reply(const Saved& saved) {
-  return build<wire::ReplayReply>(
-      0, [&](auto root) { root.initSaved().setComplete(saved.complete); });
+  return build<wire::ReplayReply>(0,
+                                  [&](auto root) { root.initSaved().setComplete(saved.complete); });
 }
 
 Bytes encode_request(const WeightsWanted& wanted) {

@@ -23,8 +23,8 @@ T whole_number(const nlohmann::json& value) {
     if (std::in_range<T>(number)) return static_cast<T>(number);
   }
   throw Failure("{} is no whole number from {} to {}",
-                value.is_number() ? value.dump() : value.type_name(),
-                std::numeric_limits<T>::min(), std::numeric_limits<T>::max());
+                value.is_number() ? value.dump() : value.type_name(), std::numeric_limits<T>::min(),
+                std::numeric_limits<T>::max());
 }
 
 // Of a list. Throws Failure likewise, or when the value is none.

@@ -16,8 +16,8 @@ inline constexpr const char* kVersion = "0.1.0";
 // stop_requested(); SIGPIPE is ignored; the pulse is adopted (proto/pulse.h).
 int run_program(const std::string& name, const std::function<int()>& body);
 
-// Whether a signal has asked this process to end. Every loop that waits looks at it; it is a sign of
-// life (proto/pulse.h).
+// Whether a signal has asked this process to end. Every loop that waits looks at it; it is a sign
+// of life (proto/pulse.h).
 bool stop_requested();
 
 }  // namespace corridor

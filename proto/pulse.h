@@ -8,7 +8,8 @@
 
 namespace corridor {
 
-// The starter's side. Nothing of it is in any file system; it goes with the last process that has it.
+// The starter's side. Nothing of it is in any file system; it goes with the last process that has
+// it.
 class Pulse {
  public:
   // Throws Failure when the system has no memory for it.
@@ -31,8 +32,8 @@ class Pulse {
 
 // The process's side. Takes what its environment says; without it, beats go nowhere.
 void adopt_pulse();
-// Costs an addition. Whatever waits or works for long calls it many times a second: stop_requested()
-// and TimeAccount::charge() do.
+// Costs an addition. Whatever waits or works for long calls it many times a second:
+// stop_requested() and TimeAccount::charge() do.
 void beat();
 
 }  // namespace corridor

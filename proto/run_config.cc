@@ -282,8 +282,8 @@ std::string first_line(std::string_view what) {
   return std::string(what);
 }
 
-// The TOML library reads beyond what it was given where text is no UTF-8, and its recursion has no
-// bound: neither gets as far.
+// The TOML library reads beyond what it was given where text is no UTF-8, overflows on long binary
+// numbers, and recurses without a bound: none of that gets as far.
 void check_text(const std::string& text, const std::string& name) {
   constexpr std::size_t kBytesMax = 1 << 20;
   constexpr int kNestingMax = 64;
@@ -292,6 +292,12 @@ void check_text(const std::string& text, const std::string& name) {
     nlohmann::json(text).dump();
   } catch (const nlohmann::json::exception&) {
     throw Failure("{}: not valid TOML: it is no UTF-8 text", name);
+  }
+  for (std::size_t at = text.find("0b"); at != std::string::npos; at = text.find("0b", at + 1)) {
+    constexpr std::size_t kDigitsMax = 62;
+    if (text.find_first_not_of("01_", at + 2) > at + 2 + kDigitsMax) {
+      throw Failure("{}: not valid TOML: a binary number of too many digits", name);
+    }
   }
   int nesting = 0;
   for (const char c : text) {

@@ -64,15 +64,19 @@ std::string hash_of(std::string_view content) {
   return hash.hex();
 }
 
-}  // namespace
-
-// File systems that cannot do it for directories say EINVAL, and there is nothing better to do then.
-void sync_directory(const fs::path& directory) {
-  const Descriptor opened(::open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+// File systems that cannot do it for directories say EINVAL, and there is nothing better to do
+// then.
+void sync(const fs::path& path, int flags) {
+  const Descriptor opened(::open(path.c_str(), O_RDONLY | O_CLOEXEC | flags));
   if (!opened.valid() || (::fsync(opened.get()) != 0 && errno != EINVAL)) {
-    throw Failure("cannot sync directory {}: {}", directory.string(), reason());
+    throw Failure("cannot sync {}: {}", path.string(), reason());
   }
 }
+
+}  // namespace
+
+void sync_file(const fs::path& file) { sync(file, 0); }
+void sync_directory(const fs::path& directory) { sync(directory, O_DIRECTORY); }
 
 void write_file(const fs::path& file, std::string_view content) {
   const fs::path temporary = file.string() + kTemporary + std::to_string(getpid());
@@ -119,13 +123,20 @@ json read_json(const fs::path& file) {
 
 RunDirectory RunDirectory::create(const fs::path& root) {
   on_disk("create", root, [&] {
-    if (fs::exists(root)) {
+    if (fs::exists(root / "manifest.json")) {
       throw Failure("{} exists already: continue it with `corridor resume`, or choose another name",
                     root.string());
+    }
+    if (fs::exists(root)) {
+      throw Failure(
+          "{} exists already and is no run, or one that never began: remove it, or choose "
+          "another name",
+          root.string());
     }
     for (const char* name : {"sumo", "log", "metrics", "checkpoints", "evaluation/episodes"}) {
       fs::create_directories(root / name);
     }
+    for (const fs::path& made : {root, parent_of(root)}) sync_directory(made);
   });
   return RunDirectory(root);
 }

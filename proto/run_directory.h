@@ -11,11 +11,10 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
-
-#include <nlohmann/json_fwd.hpp>
 
 #include "proto/failure.h"
 
@@ -29,7 +28,9 @@ void write_file(const std::filesystem::path& file, std::string_view content);
 std::string read_file(const std::filesystem::path& file);
 // Throws Failure naming the file when missing or not JSON.
 nlohmann::json read_json(const std::filesystem::path& file);
-// Makes a rename or a new name in the directory survive a power failure.
+// Makes what another program wrote survive a power failure.
+void sync_file(const std::filesystem::path& file);
+// Makes a rename or a new name in the directory survive one.
 void sync_directory(const std::filesystem::path& directory);
 // Turns the standard library's error into a Failure: "cannot <what> <path>: <reason>".
 template <typename Action>
@@ -43,7 +44,7 @@ void on_disk(const char* what, const std::filesystem::path& path, const Action& 
 
 class RunDirectory {
  public:
-  // Throws Failure when it exists already (naming what to do) or cannot be created.
+  // Throws Failure when it exists already (saying what to do) or cannot be created.
   static RunDirectory create(const std::filesystem::path& root);
   // Throws Failure when it is missing or no run directory (no config.toml or manifest.json).
   static RunDirectory open(const std::filesystem::path& root);

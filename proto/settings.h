@@ -169,7 +169,7 @@ struct ScheduleSettings {
   std::int64_t selection_every_steps = 100'000;  // greedy evaluation; all actors together
   int selection_episodes = 16;                   // on seeds of its own, the same each time
   double selection_collision_cost = 50.0;  // best = reward - cost * collisions, per 1000 steps
-  std::int64_t checkpoint_every_steps = 100'000;
+  std::int64_t checkpoint_every_steps = 50'000;
   int checkpoints_kept = 2;
 };
 

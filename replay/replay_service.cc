@@ -174,8 +174,7 @@ Snapshot ReplayService::snapshot(const std::filesystem::path& previous) const {
   // Of the phase before, and of keys that have given way, nothing is needed any more.
   std::erase_if(result.files,
                 [&](const RowsFile& file) { return file.end_key <= store_.oldest_key(); });
-  result.first_new_key =
-      result.files.empty() ? store_.oldest_key() : result.files.back().end_key;
+  result.first_new_key = result.files.empty() ? store_.oldest_key() : result.files.back().end_key;
   if (result.first_new_key > store_.next_key()) {
     throw Failure("{} has rows up to key {}, the replay up to {}: it is of another run",
                   previous.string(), result.first_new_key, store_.next_key());

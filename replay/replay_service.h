@@ -66,8 +66,8 @@ class ReplayService {
   // Named values (proto/metrics.h) as of the last block; equal in equal runs.
   std::vector<std::pair<std::string, double>> metrics() const;
 
-  // All of rounds < next_round(), nothing parked, but for rows that `previous` (a checkpoint of this
-  // run; empty: none) has. Equal states give equal heads and rows. Throws Failure.
+  // All of rounds < next_round(), nothing parked, but for rows that `previous` (a checkpoint of
+  // this run; empty: none) has. Equal states give equal heads and rows. Throws Failure.
   Snapshot snapshot(const std::filesystem::path& previous) const;
   // From a checkpoint: goes on as the one that wrote it did. Throws Failure naming the file.
   void load(const std::filesystem::path& checkpoint);

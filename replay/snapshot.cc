@@ -37,9 +37,10 @@ void write(const Snapshot& snapshot, const fs::path& directory, const fs::path& 
 
 SnapshotWriter::SnapshotWriter(Snapshot snapshot, fs::path directory, fs::path previous)
     : directory_(std::move(directory)),
-      writing_(std::async(std::launch::async,
-                          [snapshot = std::move(snapshot), directory = directory_,
-                           previous = std::move(previous)] { write(snapshot, directory, previous); })) {}
+      writing_(
+          std::async(std::launch::async,
+                     [snapshot = std::move(snapshot), directory = directory_,
+                      previous = std::move(previous)] { write(snapshot, directory, previous); })) {}
 
 bool SnapshotWriter::complete() {
   if (!writing_.valid()) return true;

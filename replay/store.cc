@@ -214,14 +214,14 @@ void Store::load_rows(std::uint64_t first_key, const TensorFile& file, const std
   const std::uint64_t count = rows.size() / stride;
   if (rows.size() % stride != 0 || !are_finite(rows) || first_key > next_key_ ||
       count > next_key_ - first_key) {
-    throw Failure("{}: {} floats are no rows of {} with keys from {} to at most {}; use an older "
-                  "checkpoint",
-                  name, rows.size(), stride, first_key, next_key_);
+    throw Failure(
+        "{}: {} floats are no rows of {} with keys from {} to at most {}; use an older "
+        "checkpoint",
+        name, rows.size(), stride, first_key, next_key_);
   }
   for (std::uint64_t i = 0; i < count; ++i) {
     if (first_key + i < oldest_key()) continue;
-    std::memcpy(row((first_key + i) % capacity_), rows.data() + i * stride,
-                stride * sizeof(float));
+    std::memcpy(row((first_key + i) % capacity_), rows.data() + i * stride, stride * sizeof(float));
   }
 }
 

@@ -68,9 +68,9 @@ class Store {
   // Everything but the rows and what the constructor is given: "leaves" [size] from the oldest key
   // on, "first_key", "next_key", "sampled", "stale_priorities".
   void save(TensorFile& file) const;
-  // Into an empty store: the same, and then the rows, in parts: those with the keys from `first_key`
-  // on; of keys that are not held, nothing. Throw Failure naming the file when its numbers do not
-  // fit together.
+  // Into an empty store: the same, and then the rows, in parts: those with the keys from
+  // `first_key` on; of keys that are not held, nothing. Throw Failure naming the file when its
+  // numbers do not fit together.
   void load(const TensorFile& file, const std::string& name);
   void load_rows(std::uint64_t first_key, const TensorFile& file, const std::string& name);
 

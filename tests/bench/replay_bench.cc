@@ -103,6 +103,19 @@ void Gather(benchmark::State& state) {
 }
 BENCHMARK(Gather)->Apply(rings);
 
+// What the server stops for when a checkpoint is taken: the rows since the one before, and all
+// priorities.
+void StoreSnapshot(benchmark::State& state) {
+  constexpr std::uint64_t kNewRows = 50'000;
+  const Store store = full_store(static_cast<int>(state.range(0)), state.range(1));
+  for (auto _ : state) {
+    TensorFile head;
+    store.save(head);
+    benchmark::DoNotOptimize(store.rows_from(store.next_key() - kNewRows));
+  }
+}
+BENCHMARK(StoreSnapshot)->Apply(rings);
+
 // Of the rows that were drawn just before, as a learner returns them.
 void StoreUpdate(benchmark::State& state) {
   Store store = full_store(static_cast<int>(state.range(0)), state.range(1));

@@ -120,8 +120,8 @@ TEST_F(Local, OneThatDiesAgainAndAgainWithoutProgressIsAFailureThatSaysHow) {
 TEST_F(Local, WhileTheWorkAdvancesDeathsAreNoReasonToGiveUp) {
   // Dies as often as it takes.
   const std::string lives = file("lives").string();
-  auto plan = script("main", "echo x >> " + lives + "; [ $(wc -l < " + lives +
-                                 ") -ge 12 ] || kill -9 $$");
+  auto plan =
+      script("main", "echo x >> " + lives + "; [ $(wc -l < " + lives + ") -ge 12 ] || kill -9 $$");
   Supervision supervision;
   std::uint64_t progress = 0;
   supervision.progress = [&] { return ++progress; };
@@ -134,9 +134,9 @@ TEST_F(Local, AReplaceableProcessIsStartedAgainByItself) {
   ProcessPlan actor = script("actor", "echo x >> " + starts + "; [ $(wc -l < " + starts +
                                           ") -ge 3 ] || kill -9 $$; exec sleep 600");
   actor.replaceable = true;
-  const auto plan = {actor, script("main", "echo x >> " + file("mains").string() +
-                                               "; until [ $(wc -l < " + starts +
-                                               ") -ge 3 ]; do :; done 2> /dev/null")};
+  const auto plan = {actor,
+                     script("main", "echo x >> " + file("mains").string() + "; until [ $(wc -l < " +
+                                        starts + ") -ge 3 ]; do :; done 2> /dev/null")};
   std::vector<std::string> deaths;
   Supervision supervision;
   supervision.died = [&](const Ended& ended, bool all) {
@@ -172,9 +172,11 @@ TEST_F(Local, OneThatEndsWellBeforeTheWorkIsDoneIsMissed) {
   ProcessPlan actor = script("actor", "exit 0");
   actor.ends_by_itself = true;
   const std::string servers = file("servers").string();
-  const auto plan = {actor, script("server", "echo x >> " + servers + "; [ $(wc -l < " + servers +
-                                                 ") -ge 2 ] || exit 0; exec sleep 600"),
-                     script("main", "until [ $(wc -l < " + servers + ") -ge 2 ]; do :; done 2> /dev/null")};
+  const auto plan = {
+      actor,
+      script("server", "echo x >> " + servers + "; [ $(wc -l < " + servers +
+                           ") -ge 2 ] || exit 0; exec sleep 600"),
+      script("main", "until [ $(wc -l < " + servers + ") -ge 2 ]; do :; done 2> /dev/null")};
   std::vector<std::string> died;
   Supervision supervision;
   supervision.died = [&](const Ended& ended, bool) { died.push_back(ended.name); };
@@ -188,8 +190,8 @@ TEST_F(Local, OneWithoutASignOfLifeIsKilledAndStartedAgain) {
   Limits limits = kLimits;
   limits.hung = Milliseconds(1000);
   const std::string starts = file("starts").string();
-  const auto plan = script("main", "echo x >> " + starts + "; [ $(wc -l < " + starts +
-                                       ") -ge 2 ] || kill -STOP $$");
+  const auto plan = script(
+      "main", "echo x >> " + starts + "; [ $(wc -l < " + starts + ") -ge 2 ] || kill -STOP $$");
   std::string cause;
   Supervision supervision;
   supervision.died = [&](const Ended& ended, bool) { cause = ended.cause(); };
@@ -215,8 +217,9 @@ TEST_F(Local, ASignalStopsTheMainProcessFirstSoThatItCanFinishWithTheOthersHelp)
                                         ") && echo together; exit 0' TERM; : > " +
                                         file("main.ready").string() + "; while :; do :; done")};
   const Ending ending = run_together(plan, "main", kLimits, ticking([&] {
-    if (exists("main.ready") && exists("server.pid")) kill(getpid(), SIGINT);
-  }));
+                                       if (exists("main.ready") && exists("server.pid"))
+                                         kill(getpid(), SIGINT);
+                                     }));
   EXPECT_EQ(ending.signal, SIGINT);
   EXPECT_EQ(content("main.log"), "together\n");
   expect_gone("server");
@@ -231,8 +234,9 @@ TEST_F(Local, ASecondSignalKillsAtOnceWhateverIsStillGoingOn) {
   Limits limits = kLimits;
   limits.checkpoint = Milliseconds(600'000);
   const Ending ending = run_together(plan, "main", limits, ticking([&] {
-    if (exists("main.ready") && !std::exchange(sent, true)) kill(getpid(), SIGTERM);
-  }));
+                                       if (exists("main.ready") && !std::exchange(sent, true))
+                                         kill(getpid(), SIGTERM);
+                                     }));
   EXPECT_EQ(ending.signal, SIGTERM);
   expect_gone("main");
 }
@@ -244,15 +248,14 @@ TEST_F(Local, TheSameSignalTwiceInAMomentIsOne) {
   Limits limits = kLimits;
   limits.repeated_signal = Milliseconds(600'000);
   const Ending ending = run_together(plan, "main", limits, ticking([&] {
-    if (exists("main.ready")) kill(getpid(), SIGTERM);
-  }));
+                                       if (exists("main.ready")) kill(getpid(), SIGTERM);
+                                     }));
   EXPECT_EQ(ending.signal, SIGTERM);
   EXPECT_EQ(content("main.log"), "finished\n");
 }
 
 TEST_F(Local, WhatTheWatcherThrowsLeavesNothingRunning) {
-  EXPECT_THROW(run_together({script("main", "exec sleep 600")}, "main", kLimits,
-                            ticking([&] {
+  EXPECT_THROW(run_together({script("main", "exec sleep 600")}, "main", kLimits, ticking([&] {
                               if (exists("main.pid")) throw Failure("no more");
                             })),
                Failure);

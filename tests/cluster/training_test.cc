@@ -78,14 +78,15 @@ TEST_F(Training, ACompleteRunIsNotResumedAndThatIsNoError) {
 TEST_F(Training, ARunThatIsGoingOnIsNotResumed) {
   const RunDirectory directory = make_run(run_, 1);
   const RunLock lock(directory);
-  EXPECT_THAT([&] { resume({.run = run_}, "corridor"); }, ThrowsMessage<Failure>(HasSubstr("is going on")));
+  EXPECT_THAT([&] { resume({.run = run_}, "corridor"); },
+              ThrowsMessage<Failure>(HasSubstr("is going on")));
 }
 
 TEST_F(Training, ASettingThatTheResultDependsOnIsNotChangedInTheMiddle) {
   const RunDirectory directory = make_run(run_, Schedule(RunConfig()).rounds());
   EXPECT_THAT([&] { resume({.run = run_, .settings = {"mop.gamma=0.5"}}, "corridor"); },
-              ThrowsMessage<Failure>(testing::AllOf(HasSubstr("mop.gamma = 0.5"),
-                                                    HasSubstr("began with"))));
+              ThrowsMessage<Failure>(
+                  testing::AllOf(HasSubstr("mop.gamma = 0.5"), HasSubstr("began with"))));
   EXPECT_EQ(read_file(directory.config()), to_toml(RunConfig()));
   RunConfig changed;
   changed.run.actors = 3;

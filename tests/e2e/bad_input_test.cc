@@ -199,7 +199,8 @@ TEST_F(BadInput, ADamagedNewestCheckpointIsNamedAndTheOneBeforeIsUsed) {
     fs::remove_all(run);
     fs::copy(whole, run, fs::copy_options::recursive);
     // A flipped bit of the manifest is blamed on the file whose hash it was.
-    damage(newest_checkpoint(run) / own[i], own[i] == "manifest.json" ? 0 : static_cast<int>(i) % 3);
+    damage(newest_checkpoint(run) / own[i],
+           own[i] == "manifest.json" ? 0 : static_cast<int>(i) % 3);
     expect_failure({kCorridor, "fingerprint", run}, {newest_checkpoint(run).string()});
     const CommandResult resumed = run_command({kCorridor, "resume", run}, kDeadline_s);
     EXPECT_EQ(resumed.status, 0) << resumed.output;
@@ -292,8 +293,8 @@ TEST_F(BadInput, AFullOrReadOnlyDiskEndsTheRunWithAClearLineAndItGoesOnWhenItCan
   const std::string again = resume + "; echo \"status $?\"; ";
   std::vector<std::string> command = in_namespace(
       mount + "1m none " + disk.string() + "; \"$@\"; echo \"status $?\"; " + again + remount +
-      "size=100m,ro " + disk.string() + "; " + again + remount + "rw " + disk.string() + "; " + again +
-      kCorridor + " fingerprint " + (disk / "run").string());
+      "size=100m,ro " + disk.string() + "; " + again + remount + "rw " + disk.string() + "; " +
+      again + kCorridor + " fingerprint " + (disk / "run").string());
   for (const auto& argument : train_command(disk / "run")) command.push_back(argument);
   const CommandResult result = run_command(command, kDeadline_s);
 

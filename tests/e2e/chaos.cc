@@ -229,9 +229,15 @@ class Chaos {
 }  // namespace
 
 const char* disturbance_name(Disturbance disturbance) {
-  constexpr const char* kNames[] = {"kill an actor", "kill the replay server", "kill the learner",
-                                    "kill the launcher", "kill all", "SIGTERM to one",
-                                    "SIGTERM to the launcher", "Ctrl-C", "hang one",
+  constexpr const char* kNames[] = {"kill an actor",
+                                    "kill the replay server",
+                                    "kill the learner",
+                                    "kill the launcher",
+                                    "kill all",
+                                    "SIGTERM to one",
+                                    "SIGTERM to the launcher",
+                                    "Ctrl-C",
+                                    "hang one",
                                     "machine down"};
   return kNames[static_cast<int>(disturbance)];
 }

@@ -1,5 +1,5 @@
-// chaos SCENARIO: trains it undisturbed, then again and again while processes are killed, stopped and
-// asked to end at random, and compares the fingerprints. docs/operations.md quotes it.
+// chaos SCENARIO: trains it undisturbed, then again and again while processes are killed, stopped
+// and asked to end at random, and compares the fingerprints. docs/operations.md quotes it.
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdio>
@@ -78,8 +78,8 @@ int run(Options options) {
   for (const auto& [what, times] : all) {
     std::printf("  %-24s %d\n", e2e::disturbance_name(what), times);
   }
-  std::printf("%d trainings in %.0f min, %d resumes: all as undisturbed\n", trainings, seconds / 60.0,
-              resumes);
+  std::printf("%d trainings in %.0f min, %d resumes: all as undisturbed\n", trainings,
+              seconds / 60.0, resumes);
   return 0;
 }
 

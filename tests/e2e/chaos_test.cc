@@ -8,8 +8,8 @@ namespace {
 
 TEST(Chaos, HoweverItIsDisturbedATrainingEndsWithTheSameBits) {
   TemporaryDirectory temporary;
-  const std::vector<std::string> longer = {"--set", "mop.steps=30000", "--set", "bp.steps=20000",
-                                           "--set", "run.peer_timeout_s=4.5"};
+  const std::vector<std::string> longer = {
+      "--set", "mop.steps=30000", "--set", "bp.steps=20000", "--set", "run.peer_timeout_s=4.5"};
   const auto undisturbed = temporary.path() / "undisturbed";
   ASSERT_EQ(run_command(train_command(undisturbed, longer), kDeadline_s).status, 0);
   const auto shared_memory = shared_memory_files();

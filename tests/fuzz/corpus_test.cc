@@ -14,8 +14,8 @@ namespace fs = std::filesystem;
 TEST(Corpus, IsReadWithoutAFinding) {
   for (const Target& target : targets()) {
     int files = 0;
-    for (const auto& entry :
-         fs::directory_iterator(fs::path(CORRIDOR_SOURCE_DIR) / "tests/fuzz/corpus" / target.name)) {
+    for (const auto& entry : fs::directory_iterator(fs::path(CORRIDOR_SOURCE_DIR) /
+                                                    "tests/fuzz/corpus" / target.name)) {
       SCOPED_TRACE(entry.path());
       const std::string whole = read_file(entry.path());
       // Also cut off everywhere, as files of a full disk are; of long ones at some places.

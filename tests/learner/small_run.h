@@ -157,7 +157,8 @@ class SmallRun {
 
   void serve_replay(const std::string& address) {
     replay::ReplayService service(config_);
-    if (const auto checkpoint = Checkpoints(directory_.checkpoints()).newest()) service.load(*checkpoint);
+    if (const auto checkpoint = Checkpoints(directory_.checkpoints()).newest())
+      service.load(*checkpoint);
     MetricsWriter metrics(directory_.metrics("replay"));
     Server server(address, kRunId);
     replay::serve(server, service, metrics, config_, [&] { return end_.load(); });

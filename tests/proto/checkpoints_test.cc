@@ -151,7 +151,8 @@ TEST_F(CheckpointsTest, ADamagedManifestIsNamed) {
 TEST(RowsFiles, AreFoundByTheirNamesAndMustFollowEachOther) {
   const testing_support::TemporaryDirectory directory;
   const auto touch = [&](const std::string& name) { std::ofstream(directory.path() / name); };
-  for (const char* name : {"rows-12-30", "rows-3-5", "rows-5-12", "rows-x", "rows-1-2.tmp", "other"}) {
+  for (const char* name :
+       {"rows-12-30", "rows-3-5", "rows-5-12", "rows-x", "rows-1-2.tmp", "other"}) {
     touch(name);
   }
   EXPECT_THAT(rows_files(directory.path()),

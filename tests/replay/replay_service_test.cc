@@ -293,7 +293,8 @@ TEST_F(ReplayServiceTest, ABlockOpensWhenItsLastChunkComes) {
   // A learner that restarts asks again.
   EXPECT_TRUE(std::holds_alternative<Waiting>(service.handle(kLearner, OpenBlock{0})));
   EXPECT_THAT(refusal_of(service.handle(kLearner, Step{{}, {}, 1, 0.4})), HasSubstr("outside"));
-  EXPECT_THAT(refusal_of(service.handle(kLearner, Save{directory_.string(), ""})), HasSubstr("open"));
+  EXPECT_THAT(refusal_of(service.handle(kLearner, Save{directory_.string(), ""})),
+              HasSubstr("open"));
   insert(service, 0, 1);
   EXPECT_TRUE(service.try_open().has_value());
   EXPECT_FALSE(service.try_open().has_value());
