@@ -8,18 +8,19 @@
 
 namespace corridor::actor {
 
-NStepBuilder::NStepBuilder(RowLayout layout, int n, double gamma, double reward_scale)
+NStepBuilder::NStepBuilder(RowLayout layout, const DqnSettings& dqn)
     : layout_(layout),
-      n_(static_cast<std::size_t>(n)),
-      gamma_(gamma),
-      reward_scale_(reward_scale) {}
+      n_(static_cast<std::size_t>(dqn.n_step)),
+      gamma_(dqn.gamma),
+      risk_gamma_(dqn.risk_gamma),
+      reward_scale_(dqn.reward_scale) {}
 
-void NStepBuilder::push(std::span<const float> observation, int action, double reward,
-                        bool terminal) {
+void NStepBuilder::push(std::span<const float> observation, int action, const Outcome& outcome) {
   CORRIDOR_CHECK(observation.size() == layout_.next_observation(), "{}", observation.size());
   if (pending_.size() == n_) emit(observation);
-  pending_.push_back({{observation.begin(), observation.end()}, action, reward});
-  if (terminal) {
+  pending_.push_back(
+      {{observation.begin(), observation.end()}, action, outcome.reward, outcome.cost});
+  if (outcome.terminal) {
     while (!pending_.empty()) emit(std::nullopt);
   }
 }
@@ -36,11 +37,13 @@ void NStepBuilder::clear() {
 }
 
 void NStepBuilder::emit(std::optional<std::span<const float>> next_observation) {
-  double n_step_return = 0.0;
-  double weight = 1.0;
+  double n_step_return = 0.0, discount = 1.0;
+  double risk_return = 0.0, risk_discount = 1.0;
   for (const Step& step : pending_) {
-    n_step_return += weight * step.reward;
-    weight *= gamma_;
+    n_step_return += discount * step.reward;
+    risk_return += risk_discount * step.cost;
+    discount *= gamma_;
+    risk_discount *= risk_gamma_;
   }
   const std::size_t start = rows_.size();
   rows_.resize(start + layout_.stride(), 0.0f);
@@ -49,10 +52,12 @@ void NStepBuilder::emit(std::optional<std::span<const float>> next_observation) 
   std::copy(first.observation.begin(), first.observation.end(), row);
   if (next_observation) {
     std::copy(next_observation->begin(), next_observation->end(), row + layout_.next_observation());
-    row[layout_.discount()] = static_cast<float>(weight);
+    row[layout_.discount()] = static_cast<float>(discount);
+    row[layout_.risk_discount()] = static_cast<float>(risk_discount);
   }
   row[layout_.action()] = static_cast<float>(first.action);
   row[layout_.n_step_return()] = static_cast<float>(reward_scale_ * n_step_return);
+  row[layout_.risk_return()] = static_cast<float>(risk_return);
   pending_.pop_front();
 }
 

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "proto/settings.h"
 #include "proto/transition.h"
 
 namespace corridor::actor {
@@ -13,11 +14,16 @@ namespace corridor::actor {
 // A row is complete n steps later, or when the episode ends for learning. One thread owns it.
 class NStepBuilder {
  public:
-  NStepBuilder(RowLayout layout, int n, double gamma, double reward_scale);
+  NStepBuilder(RowLayout layout, const DqnSettings& dqn);
 
-  // One step: what was observed before it, what was done, what it earned (unscaled). After a
-  // terminal step nothing is bootstrapped from; further steps may follow and stand on their own.
-  void push(std::span<const float> observation, int action, double reward, bool terminal);
+  // One step: what was observed before it, what was done, and what came of it. After a terminal
+  // step nothing is bootstrapped from; further steps may follow and stand on their own.
+  struct Outcome {
+    double reward = 0.0;  // unscaled
+    double cost = 0.0;    // of a collision
+    bool terminal = false;
+  };
+  void push(std::span<const float> observation, int action, const Outcome& outcome);
 
   // The episode is cut off without being over for learning (step limit, evaluation): bootstraps
   // from `last_observation`.
@@ -34,6 +40,7 @@ class NStepBuilder {
     std::vector<float> observation;
     int action;
     double reward;
+    double cost;
   };
   // Completes the oldest pending step with everything that is pending.
   void emit(std::optional<std::span<const float>> next_observation);
@@ -41,6 +48,7 @@ class NStepBuilder {
   RowLayout layout_;
   std::size_t n_;
   double gamma_;
+  double risk_gamma_;
   double reward_scale_;
   std::deque<Step> pending_;
   std::vector<float> rows_;

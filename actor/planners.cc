@@ -1,30 +1,28 @@
 #include "actor/planners.h"
 
-#include <utility>
-
 #include "actor/driving/observation.h"
 #include "actor/driving/rules.h"
 
 namespace corridor::actor {
 
-QBehaviourPlanner::QBehaviourPlanner(const RunConfig& config, std::vector<float> parameters)
+QBehaviourPlanner::QBehaviourPlanner(const RunConfig& config, std::span<const float> parameters)
     : settings_(driving_settings(config)),
-      network_(config.network(Phase::kBp), std::move(parameters)),
+      values_(config.phase(Phase::kBp), config.shape(Phase::kBp), parameters),
       observation_(static_cast<std::size_t>(config.shape(Phase::kBp).observations)) {}
 
 driving::Command QBehaviourPlanner::decide(const driving::Situation& situation) {
   driving::observe_bp(situation.scene, situation.previous, settings_, observation_);
-  return static_cast<driving::Command>(network_.greedy(observation_));
+  return static_cast<driving::Command>(values_.greedy(observation_));
 }
 
-QMotionPlanner::QMotionPlanner(const RunConfig& config, std::vector<float> parameters)
+QMotionPlanner::QMotionPlanner(const RunConfig& config, std::span<const float> parameters)
     : settings_(driving_settings(config)),
-      network_(config.network(Phase::kMop), std::move(parameters)),
+      values_(config.phase(Phase::kMop), config.shape(Phase::kMop), parameters),
       observation_(static_cast<std::size_t>(config.shape(Phase::kMop).observations)) {}
 
 int QMotionPlanner::decide(const driving::Situation& situation, const driving::Window& window) {
   driving::observe_mop(situation.scene, situation.gaps, window, settings_, observation_);
-  return network_.greedy(observation_);
+  return values_.greedy(observation_);
 }
 
 std::unique_ptr<driving::BehaviourPlanner> make_behaviour_planner(const PlannerPair& pair,

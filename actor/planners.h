@@ -2,41 +2,42 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "actor/driving/planner.h"
-#include "actor/policy/q_network.h"
+#include "actor/policy/action_values.h"
 #include "proto/planner_pairs.h"
 #include "proto/settings.h"
 
 namespace corridor::actor {
 
-// Greedy on a Q-network.
+// Greedy on the learned values.
 class QBehaviourPlanner : public driving::BehaviourPlanner {
  public:
-  QBehaviourPlanner(const RunConfig& config, std::vector<float> parameters);
+  QBehaviourPlanner(const RunConfig& config, std::span<const float> parameters);
   void begin_episode(std::uint64_t) override {}
   driving::Command decide(const driving::Situation& situation) override;
 
  private:
   DrivingSettings settings_;
-  policy::QNetwork network_;
+  policy::ActionValues values_;
   std::vector<float> observation_;
 };
 
 class QMotionPlanner : public driving::MotionPlanner {
  public:
-  QMotionPlanner(const RunConfig& config, std::vector<float> parameters);
+  QMotionPlanner(const RunConfig& config, std::span<const float> parameters);
   int decide(const driving::Situation& situation, const driving::Window& window) override;
 
  private:
   DrivingSettings settings_;
-  policy::QNetwork network_;
+  policy::ActionValues values_;
   std::vector<float> observation_;
 };
 
-// The trained networks' parameters, in NetworkShape's order.
+// The trained planners' parameters (RunConfig::parameters).
 struct TrainedNetworks {
   std::vector<float> mop;
   std::vector<float> bp;

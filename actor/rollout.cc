@@ -21,8 +21,7 @@ PhaseRollout::PhaseRollout(const RunConfig& config, int actor, world::World& wor
       random_bp_(driving_),
       exploration_(config.phase(phase_), phase_, config.shape(phase_).actions, config.run.seed,
                    actor),
-      transitions_({config.shape(phase_).observations}, config.phase(phase_).n_step,
-                   config.phase(phase_).gamma, config.phase(phase_).reward_scale),
+      transitions_({config.shape(phase_).observations}, config.phase(phase_)),
       episode_index_(open.episode),
       observation_(static_cast<std::size_t>(config.shape(phase_).observations)),
       mop_observation_(static_cast<std::size_t>(config.shape(Phase::kMop).observations)),
@@ -49,8 +48,8 @@ PhaseRollout::PhaseRollout(const RunConfig& config, int actor, world::World& wor
 }
 
 Insert PhaseRollout::drive_round(const Weights& weights) {
-  mop_.emplace(config_.network(Phase::kMop), weights.mop);
-  bp_.emplace(config_.network(Phase::kBp), weights.bp);
+  mop_.emplace(config_.phase(Phase::kMop), config_.shape(Phase::kMop), weights.mop);
+  bp_.emplace(config_.phase(Phase::kBp), config_.shape(Phase::kBp), weights.bp);
   const int steps = config_.schedule.steps_per_round;
   const auto rounds_before = static_cast<std::int64_t>(next_round_ - schedule_.first_round(phase_));
   for (int i = 0; i < steps; ++i) step(rounds_before * steps + i, std::nullopt);
@@ -60,7 +59,7 @@ Insert PhaseRollout::drive_round(const Weights& weights) {
   chunk.observations = static_cast<std::uint32_t>(observation_.size());
   chunk.rows = transitions_.take_rows();
   time_.charge(TimePart::kPlan);
-  chunk.priorities = policy::td_errors(chunk.rows, phase_ == Phase::kMop ? *mop_ : *bp_);
+  chunk.priorities = (phase_ == Phase::kMop ? *mop_ : *bp_).td_errors(chunk.rows);
   time_.charge(TimePart::kInfer);
   chunk.open.episode = episode_index_;
   if (episode_open_) chunk.open.actions = episode_.actions();
@@ -117,7 +116,7 @@ void PhaseRollout::step(std::int64_t own_step, std::optional<std::uint8_t> recor
     chosen = static_cast<int>(action.command);
     terminal = collided;
   }
-  transitions_.push(observation_, chosen, reward + shaping, terminal);
+  transitions_.push(observation_, chosen, {reward + shaping, collided ? 1.0 : 0.0, terminal});
 
   ++totals_.steps;
   totals_.reward += reward;
@@ -164,9 +163,9 @@ driving::StepAction PhaseRollout::decide(std::optional<int> random_action,
   return action;
 }
 
-int PhaseRollout::greedy(policy::QNetwork& network, const std::vector<float>& observation) {
+int PhaseRollout::greedy(policy::ActionValues& planner, const std::vector<float>& observation) {
   time_.charge(TimePart::kPlan);
-  const int action = network.greedy(observation);
+  const int action = planner.greedy(observation);
   time_.charge(TimePart::kInfer);
   return action;
 }

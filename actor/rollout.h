@@ -9,8 +9,8 @@
 #include "actor/driving/rules.h"
 #include "actor/episode.h"
 #include "actor/n_step.h"
+#include "actor/policy/action_values.h"
 #include "actor/policy/exploration.h"
-#include "actor/policy/q_network.h"
 #include "proto/messages.h"
 #include "proto/schedule.h"
 #include "proto/time_account.h"
@@ -55,7 +55,7 @@ class PhaseRollout {
   void step(std::int64_t own_step, std::optional<std::uint8_t> recorded);
   driving::StepAction decide(std::optional<int> random_action,
                              const std::optional<std::uint8_t>& recorded);
-  int greedy(policy::QNetwork& network, const std::vector<float>& observation);
+  int greedy(policy::ActionValues& planner, const std::vector<float>& observation);
   // What the planner in training sees now, given the command where that is the MoP.
   void observe(driving::Command command);
   void cut_off_episode();
@@ -75,8 +75,8 @@ class PhaseRollout {
   std::uint64_t episode_index_;
   bool episode_open_ = false;
 
-  std::optional<policy::QNetwork> mop_;
-  std::optional<policy::QNetwork> bp_;
+  std::optional<policy::ActionValues> mop_;
+  std::optional<policy::ActionValues> bp_;
   std::vector<float> observation_;      // of the planner in training
   std::vector<float> mop_observation_;  // of the frozen MoP, in the BP phase
   RolloutTotals totals_;

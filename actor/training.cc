@@ -136,9 +136,8 @@ class Trainer {
   }
 
   void check_weights() const {
-    if (weights_.version != asked_ ||
-        weights_.mop.size() != config_.network(Phase::kMop).parameters() ||
-        weights_.bp.size() != config_.network(Phase::kBp).parameters()) {
+    if (weights_.version != asked_ || weights_.mop.size() != config_.parameters(Phase::kMop) ||
+        weights_.bp.size() != config_.parameters(Phase::kBp)) {
       throw Failure(
           "the learner sent weights of version {} with {} and {} parameters, which are "
           "not those asked for: is it of another configuration?",

@@ -110,8 +110,8 @@ LearnerState from_tensors(const TensorFile& tensors, const RunConfig& config,
     throw Failure("{}: {} rounds done of {}; was config.toml changed?", file, state.next_round,
                   schedule.rounds());
   }
-  const std::size_t mop = config.network(Phase::kMop).parameters();
-  const std::size_t bp = config.network(Phase::kBp).parameters();
+  const std::size_t mop = config.parameters(Phase::kMop);
+  const std::size_t bp = config.parameters(Phase::kBp);
   const std::size_t learning =
       phase_in_progress(schedule, state.next_round) == Phase::kMop ? mop : bp;
 

@@ -21,15 +21,18 @@ void check_device(const std::string& device) {
 
 void use_one_torch_thread() { at::set_num_threads(1); }
 
-std::vector<float> initial_parameters(const NetworkShape& shape, std::uint64_t seed, Phase phase) {
-  std::vector<float> values(shape.parameters());
-  for (const NetworkShape::Layer& layer : shape.layers()) {
-    const double bound = 1.0 / std::sqrt(static_cast<double>(layer.inputs));
-    const std::size_t end = layer.biases + static_cast<std::size_t>(layer.outputs);
-    for (std::size_t i = layer.weights; i < end; ++i) {
-      const double unit =
-          random_unit(seed, Purpose::kInitialWeights, {static_cast<std::uint64_t>(phase), i});
-      values[i] = static_cast<float>(bound * (2.0 * unit - 1.0));
+std::vector<float> initial_parameters(const NetworkShape& shape, std::uint64_t seed, Phase phase,
+                                      int networks) {
+  std::vector<float> values(static_cast<std::size_t>(networks) * shape.parameters());
+  for (std::size_t start = 0; start < values.size(); start += shape.parameters()) {
+    for (const NetworkShape::Layer& layer : shape.layers()) {
+      const double bound = 1.0 / std::sqrt(static_cast<double>(layer.inputs));
+      const std::size_t end = start + layer.biases + static_cast<std::size_t>(layer.outputs);
+      for (std::size_t i = start + layer.weights; i < end; ++i) {
+        const double unit =
+            random_unit(seed, Purpose::kInitialWeights, {static_cast<std::uint64_t>(phase), i});
+        values[i] = static_cast<float>(bound * (2.0 * unit - 1.0));
+      }
     }
   }
   return values;

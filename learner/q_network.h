@@ -24,8 +24,10 @@ void check_device(const std::string& device);
 // Keeps LibTorch to the calling thread; call it first in main.
 void use_one_torch_thread();
 
-// Uniform in +-1/sqrt(fan-in), weights and biases alike, each a function of (seed, phase, index).
-std::vector<float> initial_parameters(const NetworkShape& shape, std::uint64_t seed, Phase phase);
+// Of `networks` networks of this shape, one after the other: uniform in +-1/sqrt(fan-in), weights
+// and biases alike, each a function of (seed, phase, index).
+std::vector<float> initial_parameters(const NetworkShape& shape, std::uint64_t seed, Phase phase,
+                                      int networks = 1);
 
 class QNetwork {
  public:

@@ -9,16 +9,22 @@
 
 namespace corridor::learner {
 
-struct TdLossSettings {
-  bool double_q = true;
-  double huber_delta = 1.0;
-};
-
-// What the networks say about a batch; each [batch, actions], row-major.
+// What a network says about a batch; each [batch, actions], row-major.
 struct BatchQValues {
   std::span<const float> online;       // at the observations
   std::span<const float> online_next;  // at the next observations; unused by plain DQN
   std::span<const float> target_next;  // by the target network, at the next observations
+};
+
+// The greedy action at each next observation, [batch]: the largest Q - risk_weight * max(0, risk),
+// the first of equals. `q` and `risk` are [batch, actions]; without a risk network `risk` is empty.
+std::vector<std::size_t> greedy_actions(std::span<const float> q, std::span<const float> risk,
+                                        double risk_weight, int actions);
+
+// In which of a row's columns a network finds its return and its discount.
+struct ReturnColumns {
+  std::size_t n_step_return = 0;
+  std::size_t discount = 0;
 };
 
 struct TdLoss {
@@ -28,11 +34,11 @@ struct TdLoss {
   std::vector<float> q_gradient;  // d loss / d online, [batch, actions]
 };
 
-// TD error = Q(s, a) - (return + discount * Q_target(s', argmax Q_online(s', .))), the maximum of
-// Q_target for plain DQN; of equal values the first counts. `rows` are whole rows of the layout,
-// one importance weight each. Throws Failure on an action that the network does not have and on a
-// TD error that is not finite (training has diverged).
-TdLoss td_loss(std::span<const float> rows, const RowLayout& layout, std::span<const float> weights,
-               const BatchQValues& q, int actions, const TdLossSettings& settings);
+// TD error = Q(s, a) - (return + discount * Q_target(s', next action)). `rows` are whole rows of
+// the layout, one importance weight and one next action each. Throws Failure on an action that the
+// network does not have and on a TD error that is not finite (training has diverged).
+TdLoss td_loss(std::span<const float> rows, const RowLayout& layout, const ReturnColumns& columns,
+               std::span<const float> weights, const BatchQValues& q,
+               std::span<const std::size_t> next_actions, int actions, double huber_delta);
 
 }  // namespace corridor::learner

@@ -49,8 +49,11 @@ std::vector<float> running_average(std::vector<float> average, const std::vector
 }
 
 LearnerState initial_state(const RunConfig& config) {
-  Weights first{0, initial_parameters(config.network(Phase::kMop), config.run.seed, Phase::kMop),
-                initial_parameters(config.network(Phase::kBp), config.run.seed, Phase::kBp)};
+  const auto initial = [&](Phase phase) {
+    return initial_parameters(config.network(phase), config.run.seed, phase,
+                              config.phase(phase).networks());
+  };
+  Weights first{0, initial(Phase::kMop), initial(Phase::kBp)};
   LearnerState state;
   state.td = initial_td_state(first.mop);
   state.published.push_back(std::move(first));
@@ -188,6 +191,7 @@ Training::BlockResult Training::train_block(std::uint64_t round, const Opened& o
     around_.time.charge(TimePart::kUpdate);
     result.loss += update.loss / opened.batches;
     result.q_value += update.q_value / opened.batches;
+    result.risk += update.risk / opened.batches;
     return std::move(update.priorities);
   });
   result.updates = td_->updates();
@@ -268,6 +272,7 @@ void Training::report(std::uint64_t round, const Opened& opened, const BlockResu
   if (opened.batches > 0) {
     values.emplace_back("losses/td_loss", result.loss);
     values.emplace_back("losses/q_values", result.q_value);
+    if (settings.networks() > 1) values.emplace_back("losses/risk_values", result.risk);
   }
   if (selected_) {
     const double thousands = static_cast<double>(selected_->steps) / 1000.0;

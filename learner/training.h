@@ -60,6 +60,7 @@ class Training {
   struct BlockResult {
     double loss = 0.0;  // means over the block's updates
     double q_value = 0.0;
+    double risk = 0.0;
     std::uint64_t updates = 0;  // in the phase so far
   };
 

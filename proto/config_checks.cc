@@ -92,9 +92,9 @@ void check_dqn(const RunConfig& config, Phase phase) {
           dqn.learning_rate_end, dqn.learning_rate);
   require(dqn.epsilon_end <= dqn.epsilon, "{0}.epsilon_end = {1} is above {0}.epsilon = {2}", table,
           dqn.epsilon_end, dqn.epsilon);
-  const std::size_t parameters = config.network(phase).parameters();
+  const std::size_t parameters = config.parameters(phase);
   require(parameters <= kParametersMax,
-          "{}.hidden = {} makes a network of {} parameters: at most {} fit a message", table,
+          "{}.hidden = {} makes a planner of {} parameters: at most {} fit a message", table,
           toml_of(dqn.hidden), parameters, kParametersMax);
 }
 

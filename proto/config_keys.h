@@ -93,6 +93,8 @@ void describe(PlannerSettings& planner, Visitor& v) {
            "added to each side of the ego in a corridor's swath");
   v.number("look_ahead_s", planner.look_ahead_s, 0.0, 10.0,
            "others occupy what their lateral speed reaches by then");
+  v.number("clearance_steps", planner.clearance_steps, 0, 10,
+           "how far the MoP sees what its moves lead to; 0: not at all");
 }
 
 template <typename Visitor>
@@ -157,6 +159,9 @@ void describe_training(DqnSettings& dqn, Visitor& v) {
   v.number("gamma", dqn.gamma, 0.0, 0.99999, "");
   v.number("n_step", dqn.n_step, 1, 100, "");
   v.number("reward_scale", dqn.reward_scale, 1e-6, 1e6, "");
+  v.number("risk_weight", dqn.risk_weight, 0.0, 1e6,
+           "of the discounted cost of collisions, which a second network learns; 0: none");
+  v.number("risk_gamma", dqn.risk_gamma, 0.0, 0.99999, "its discount factor");
   v.number("batch_size", dqn.batch_size, 1, 65'536, "");
   v.number("samples_per_insert", dqn.samples_per_insert, 0.001, 10'000.0,
            "rows trained on for each row stored");

@@ -9,7 +9,7 @@
 namespace corridor {
 
 // Raised with every change of proto/wire.capnp or of a meaning in it.
-inline constexpr std::uint32_t kProtocolVersion = 4;
+inline constexpr std::uint32_t kProtocolVersion = 5;
 
 enum class Role : std::uint16_t { kActor, kLearner };
 enum class MessageKind : std::uint16_t { kRequest, kReply, kPending, kRefused };

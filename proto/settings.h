@@ -60,12 +60,13 @@ struct EgoSettings {
 // [planner] The state-action abstraction of paper section III-C.
 struct PlannerSettings {
   int corridors_per_lane = 5;  // N_c: odd, so that there is a middle
-  std::vector<double> speed_changes_mps = {-4.0, -2.0, -1.0, 0.0,
-                                           1.0,  2.0};  // of the set-point, ascending
-  double corridor_change_s = 1.0;                 // time to move over by one corridor
+  std::vector<double> speed_changes_mps = {-4.0, -2.0, -1.0,
+                                           0.0,  1.0,  2.0};  // of the set-point, ascending
+  double corridor_change_s = 1.0;                             // time to move over by one corridor
   double gap_range_m = 100.0;
   double side_clearance_m = 0.15;  // added to each side of the ego in a corridor's swath
   double look_ahead_s = 1.0;       // others occupy what their lateral speed reaches by then
+  int clearance_steps = 2;         // how far the MoP sees what its moves lead to; 0: not at all
 };
 
 // [mop_reward] Paper section III-C; d = headway_s * v + standstill_gap_m.
@@ -119,6 +120,10 @@ struct DqnSettings {
   double gamma = 0.97;
   int n_step = 4;
   double reward_scale = 0.03;
+  // A second network of the same shape learns the risk R(s, a): the discounted cost of collisions.
+  // The planner takes the action of the largest Q - risk_weight * max(0, R). 0: no second network.
+  double risk_weight = 0.3;
+  double risk_gamma = 0.9;
   int batch_size = 64;
   double samples_per_insert = 32.0;  // the replay ratio: rows trained on for each row stored
   int target_copy_updates = 1000;
@@ -127,8 +132,8 @@ struct DqnSettings {
   double adam_epsilon = 1e-8;
   double huber_delta = 1.0;
   // The weights that drive are a running average of the trained ones over about the last so many
-  // updates (Polyak and Juditsky 1992): a single iterate's noise makes a BP change lanes needlessly.
-  // 0: the trained weights themselves.
+  // updates (Polyak and Juditsky 1992): a single iterate's noise makes a BP change lanes
+  // needlessly. 0: the trained weights themselves.
   int averaging_updates = 2500;
   double gradient_norm_max = 10.0;
   // Exploration: linear from `epsilon` to `epsilon_end` in `epsilon_steps` (of the phase, all
@@ -149,6 +154,8 @@ struct DqnSettings {
   NetworkShape network(PlannerShape shape) const {
     return {shape.observations, hidden, shape.actions, dueling};
   }
+  // For the reward, and for the risk where there is one.
+  int networks() const { return risk_weight > 0.0 ? 2 : 1; }
 };
 
 // Where [bp] differs by default: it trains less, and looks further ahead.
@@ -158,6 +165,7 @@ inline DqnSettings bp_defaults() {
   settings.gamma = 0.99;
   settings.n_step = 10;  // a lane change takes five steps and pays only later
   settings.reward_scale = 0.1;
+  settings.risk_gamma = 0.95;
   settings.epsilon_end = 0.01;
   settings.exploration_hold_max = 8;
   return settings;
@@ -211,10 +219,15 @@ struct RunConfig {
   const DqnSettings& phase(Phase which) const { return dqn[static_cast<std::size_t>(which)]; }
   PlannerShape shape(Phase which) const {
     return which == Phase::kMop ? mop_shape(planner.corridors_per_lane,
-                                            static_cast<int>(planner.speed_changes_mps.size()))
+                                            static_cast<int>(planner.speed_changes_mps.size()),
+                                            planner.clearance_steps)
                                 : bp_shape(road.lanes);
   }
   NetworkShape network(Phase which) const { return phase(which).network(shape(which)); }
+  // A planner's parameters: its networks' one after the other, the reward's first.
+  std::size_t parameters(Phase which) const {
+    return static_cast<std::size_t>(phase(which).networks()) * network(which).parameters();
+  }
 };
 
 // What actor/driving needs to know, and no more.

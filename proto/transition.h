@@ -23,11 +23,14 @@ struct PlannerShape {
 
 // The motion planner: index tables in actor/driving/observation.h and actor/driving/action.h.
 // Five numbers on each corridor of one lane: whether the ego is in it, front and back gap, and
-// their rates of change; and speed, set-point and the BP's target speed.
+// their rates of change; speed, set-point and the BP's target speed; and for each step of
+// planner.clearance_steps the clearance after six moves.
 inline constexpr int kMopScalars = 3;
 inline constexpr int kMopPerCorridor = 5;
-inline PlannerShape mop_shape(int corridors_per_lane, int speed_changes) {
-  return {kMopScalars + kMopPerCorridor * corridors_per_lane, 3 * speed_changes};
+inline constexpr int kMopMoves = 6;
+inline PlannerShape mop_shape(int corridors_per_lane, int speed_changes, int clearance_steps) {
+  return {kMopScalars + kMopPerCorridor * corridors_per_lane + kMopMoves * clearance_steps,
+          3 * speed_changes};
 }
 
 // The behaviour planner: ego speed, set-point and lateral offset, ego lane (one-hot), the previous
@@ -45,13 +48,17 @@ inline PlannerShape bp_shape(int lanes) {
 //   action()        index of the action taken, exact in a float
 //   n_step_return() scaled and discounted sum of the rewards in between
 //   discount()      gamma^steps to bootstrap with; 0 where the episode ended for learning
+//   risk_return()   the same sum of costs: 1 for the step of a collision, else 0; not scaled
+//   risk_discount() risk_gamma^steps; 0 where discount() is
 struct RowLayout {
   int observations = 0;
   std::size_t next_observation() const { return static_cast<std::size_t>(observations); }
   std::size_t action() const { return 2 * next_observation(); }
   std::size_t n_step_return() const { return action() + 1; }
   std::size_t discount() const { return action() + 2; }
-  std::size_t stride() const { return action() + 3; }
+  std::size_t risk_return() const { return action() + 3; }
+  std::size_t risk_discount() const { return action() + 4; }
+  std::size_t stride() const { return action() + 5; }
   bool operator==(const RowLayout&) const = default;
 };
 

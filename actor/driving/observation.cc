@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "actor/driving/clearance.h"
 #include "proto/failure.h"
 
 namespace corridor::driving {
@@ -30,7 +31,9 @@ void put_gaps(const CorridorGaps& gaps, float* front_gap) {
 void observe_mop(const Scene& scene, const std::vector<CorridorGaps>& gaps, const Window& window,
                  const DrivingSettings& settings, std::span<float> out) {
   const Lanes lanes(settings);
-  const auto size = static_cast<std::size_t>(MopIndex::corridor(window.size()));
+  const auto clearances_at = static_cast<std::size_t>(MopIndex::corridor(window.size()));
+  const std::size_t size =
+      clearances_at + static_cast<std::size_t>(kMopMoves * settings.planner.clearance_steps);
   CORRIDOR_CHECK(out.size() == size, "{} floats for {} observations", out.size(), size);
   CORRIDOR_CHECK(static_cast<int>(gaps.size()) == lanes.corridors(), "{} gaps", gaps.size());
 
@@ -48,6 +51,11 @@ void observe_mop(const Scene& scene, const std::vector<CorridorGaps>& gaps, cons
     if (window.is_open(corridor))
       put_gaps(gaps[static_cast<std::size_t>(corridor)], entry + MopIndex::kFrontGap);
   }
+  std::vector<double> clearances_m(size - clearances_at);
+  predicted_clearances_m(scene, settings, clearances_m);
+  std::ranges::transform(clearances_m, &out[clearances_at], [](double clearance_m) {
+    return static_cast<float>(std::max(-1.0, clearance_m / kClearanceMax_m));
+  });
 }
 
 void observe_bp(const Scene& scene, Command previous, const DrivingSettings& settings,

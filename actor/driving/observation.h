@@ -23,6 +23,7 @@ namespace corridor::driving {
 //   3 + 5 c + 2        front gap's rate (0 where closed)
 //   3 + 5 c + 3        back gap
 //   3 + 5 c + 4        back gap's rate
+//   3 + 5 N + i        the i-th predicted clearance (actor/driving/clearance.h) / 2 m, in [-1, 1]
 struct MopIndex {
   static constexpr int kSpeed = 0;
   static constexpr int kSetPoint = 1;
@@ -47,6 +48,7 @@ void observe_mop(const Scene& scene, const std::vector<CorridorGaps>& gaps, cons
 //   then 3             previous command, one-hot: keep, left, right
 //   then 3 x 5         lanes right, own, left: exists (1 or 0), front gap, front rate, back gap,
 //                      back rate (all 0 where it does not exist)
+
 struct BpIndex {
   static constexpr int kSpeed = 0;
   static constexpr int kSetPoint = 1;
@@ -57,6 +59,7 @@ struct BpIndex {
   static constexpr int lane(int lanes, int which) {
     return kBpScalars + lanes + kBpCommands + kBpPerLane * which;
   }
+
   static constexpr int kExists = 0;
   static constexpr int kFrontGap = 1;
   static constexpr int kFrontRate = 2;

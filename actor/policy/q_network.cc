@@ -1,7 +1,5 @@
 #include "actor/policy/q_network.h"
 
-#include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "proto/failure.h"
@@ -52,31 +50,6 @@ std::span<const float> QNetwork::q_values(std::span<const float> observation) {
     q.array() += value[0] - q.mean();
   }
   return {q.data(), static_cast<std::size_t>(q.size())};
-}
-
-int QNetwork::greedy(std::span<const float> observation) { return argmax(q_values(observation)); }
-
-int argmax(std::span<const float> values) {
-  return static_cast<int>(std::max_element(values.begin(), values.end()) - values.begin());
-}
-
-std::vector<float> td_errors(std::span<const float> rows, QNetwork& network) {
-  const RowLayout layout{network.shape().observations};
-  const std::size_t count = rows.size() / layout.stride();
-  std::vector<float> errors(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    const auto row = rows.subspan(i * layout.stride(), layout.stride());
-    float target = row[layout.n_step_return()];
-    const float discount = row[layout.discount()];
-    if (discount > 0.0f) {
-      const auto next =
-          network.q_values(row.subspan(layout.next_observation(), layout.next_observation()));
-      target += discount * *std::max_element(next.begin(), next.end());
-    }
-    const auto now = network.q_values(row.first(layout.next_observation()));
-    errors[i] = std::abs(target - now[static_cast<std::size_t>(row[layout.action()])]);
-  }
-  return errors;
 }
 
 }  // namespace corridor::policy

@@ -21,20 +21,11 @@ class QNetwork {
   // Q-values [actions]; valid until the next call.
   std::span<const float> q_values(std::span<const float> observation);
 
-  // The action of the largest Q-value, the lowest of equals.
-  int greedy(std::span<const float> observation);
-
  private:
   NetworkShape shape_;
   std::vector<NetworkShape::Layer> layers_;
   std::vector<float> parameters_;
   std::vector<Eigen::VectorXf> activations_;  // one a layer
 };
-
-int argmax(std::span<const float> values);
-
-// |n-step TD error| of each row by `network` alone (Horgan et al. 2018: actors compute initial
-// priorities with the weights that they have): |return + discount * max Q(next) - Q(now, action)|.
-std::vector<float> td_errors(std::span<const float> rows, QNetwork& network);
 
 }  // namespace corridor::policy

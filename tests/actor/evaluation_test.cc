@@ -19,8 +19,8 @@ class Evaluation : public testing::Test {
  protected:
   Evaluation() : run(RunDirectory::create(temporary.path() / "run")) {
     config.simulation.episode_steps = 60;
-    networks = {std::vector<float>(config.network(Phase::kMop).parameters(), 0.01f),
-                std::vector<float>(config.network(Phase::kBp).parameters(), 0.01f)};
+    networks = {std::vector<float>(config.parameters(Phase::kMop), 0.01f),
+                std::vector<float>(config.parameters(Phase::kBp), 0.01f)};
   }
 
   json evaluate_pair(const char* pair, std::int64_t steps = 150) {

@@ -27,8 +27,8 @@ RunConfig small_config() {
   return config;
 }
 
-std::vector<float> parameters(const NetworkShape& shape, std::uint64_t stream) {
-  std::vector<float> values(shape.parameters());
+std::vector<float> parameters(std::size_t count, std::uint64_t stream) {
+  std::vector<float> values(count);
   for (std::size_t i = 0; i < values.size(); ++i) {
     values[i] = static_cast<float>(random_unit(stream, Purpose::kInitialWeights, {i}) - 0.5) * 0.4f;
   }
@@ -36,8 +36,8 @@ std::vector<float> parameters(const NetworkShape& shape, std::uint64_t stream) {
 }
 
 Weights weights_of(const RunConfig& config, std::uint64_t version) {
-  return {version, parameters(config.network(Phase::kMop), version),
-          parameters(config.network(Phase::kBp), version + 1000)};
+  return {version, parameters(config.parameters(Phase::kMop), version),
+          parameters(config.parameters(Phase::kBp), version + 1000)};
 }
 
 TimeAccount account;

@@ -6,7 +6,7 @@
 
 #include "actor/driving/rules.h"
 #include "actor/episode.h"
-#include "actor/policy/q_network.h"
+#include "actor/policy/action_values.h"
 #include "actor/world/sumo_world.h"
 #include "proto/time_account.h"
 #include "scenarios/sumo_files.h"
@@ -72,12 +72,14 @@ void Step(benchmark::State& state) {
 }
 BENCHMARK(Step)->Unit(benchmark::kMicrosecond)->Iterations(20'000);
 
-// A greedy choice of one network.
+// A greedy choice of one planner.
 void Infer(benchmark::State& state) {
-  const NetworkShape shape = paper().network(static_cast<Phase>(state.range(0)));
-  policy::QNetwork network(shape, std::vector<float>(shape.parameters(), 0.01F));
+  const auto phase = static_cast<Phase>(state.range(0));
+  const PlannerShape shape = paper().shape(phase);
+  policy::ActionValues planner(paper().phase(phase), shape,
+                               std::vector<float>(paper().parameters(phase), 0.01F));
   const std::vector<float> observation(static_cast<std::size_t>(shape.observations), 0.5F);
-  for (auto _ : state) benchmark::DoNotOptimize(network.greedy(observation));
+  for (auto _ : state) benchmark::DoNotOptimize(planner.greedy(observation));
 }
 BENCHMARK(Infer)
     ->Arg(static_cast<int>(Phase::kMop))

@@ -1,5 +1,5 @@
-// A training step against the arithmetic that it cannot do without: the matrix products of its
-// passes, and one look at every parameter for Adam.
+// A training step of one network against the arithmetic that it cannot do without: the matrix
+// products of its passes, and one look at every parameter for Adam.
 #include <benchmark/benchmark.h>
 
 #include <string>
@@ -47,7 +47,9 @@ void Step(benchmark::State& state) {
   const NetworkShape shape = shape_of(state);
   const Batch batch = random_batch(shape, static_cast<int>(state.range(1)));
   const TdState initial = initial_td_state(initial_parameters(shape, 1, Phase::kMop));
-  TdUpdate update(shape, paper().phase(static_cast<Phase>(state.range(0))), "cpu", initial);
+  DqnSettings dqn = paper().phase(static_cast<Phase>(state.range(0)));
+  dqn.risk_weight = 0.0;
+  TdUpdate update(shape, dqn, "cpu", initial);
   for (auto _ : state) benchmark::DoNotOptimize(update.update(batch, 1e-4));
 }
 
@@ -61,8 +63,10 @@ void LibTorchStep(benchmark::State& state) {
   const auto networks = torch_networks(shape, dqn, "cpu", initial);
   for (auto _ : state) {
     const auto q = networks->forward(batch.rows, static_cast<int>(batch.weights.size()));
-    const TdLoss loss = td_loss(batch.rows, {shape.observations}, batch.weights, q, shape.actions,
-                                {dqn.double_q, dqn.huber_delta});
+    const RowLayout layout{shape.observations};
+    const TdLoss loss = td_loss(
+        batch.rows, layout, {layout.n_step_return(), layout.discount()}, batch.weights, q,
+        greedy_actions(q.online_next, {}, 0.0, shape.actions), shape.actions, dqn.huber_delta);
     benchmark::DoNotOptimize(networks->step(loss.q_gradient, 1e-4));
   }
 }

@@ -103,7 +103,8 @@ void print(const std::map<std::string, PhaseTime>& phases, const RunConfig& conf
     const double agent_s = of_actor("world") + of_actor("plan") + of_actor("infer");
     std::printf("  SUMO and networks of the busy time: %.1f %%\n", 100.0 * floor_s / busy_s);
     const double step_us = 1e6 * phase.core_s.at("learner update") / phase.updates;
-    const double bare_us = TdFloor::step_us(config.network(which), config.phase(which).batch_size);
+    const DqnSettings& dqn = config.phase(which);
+    const double bare_us = dqn.networks() * TdFloor::step_us(config.network(which), dqn.batch_size);
     std::printf(
         "  a training step: %.1f us, %.2f of its bare arithmetic alone on a core (%.1f us)\n",
         step_us, step_us / bare_us, bare_us);

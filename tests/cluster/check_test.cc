@@ -20,8 +20,8 @@ TEST(Check, SaysWhatAScenarioComesTo) {
   // 28 observations: 59 floats a row.
   EXPECT_THAT(summary(config),
               AllOf(HasSubstr("3 lanes of 3.2 m, 20.0 km, 50 km/h"),
-                    HasSubstr("1,000,000 steps in 1,954 rounds; 28 observations, 18 actions"),
-                    HasSubstr("replay of 1,000,000 rows, 225 MiB")));
+                    HasSubstr("1,000,000 steps in 1,954 rounds; 40 observations, 18 actions"),
+                    HasSubstr("replay of 1,000,000 rows, 324 MiB")));
 }
 
 TEST(Check, AcceptsAScenarioThatNetconvertAcceptsAndLeavesNothing) {

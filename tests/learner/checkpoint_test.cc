@@ -25,16 +25,16 @@ RunConfig small_config() {
 // Somewhere in a phase, everything distinct.
 LearnerState some_state(const RunConfig& config, Phase phase) {
   LearnerState state = initial_state(config);
-  const NetworkShape shape = config.network(phase);
+  const auto some = [&](Phase which, std::uint64_t seed) {
+    return initial_parameters(config.network(which), seed, which, config.phase(which).networks());
+  };
   state.next_round = Schedule(config).first_round(phase) + 4;
-  state.td = {initial_parameters(shape, 2, phase), initial_parameters(shape, 3, phase),
-              initial_parameters(shape, 4, phase), initial_parameters(shape, 5, phase), 777};
+  state.td = {some(phase, 2), some(phase, 3), some(phase, 4), some(phase, 5), 777};
   Weights older = state.published[0];
   older.version = state.next_round - 1;
-  Weights newest{state.next_round, initial_parameters(config.network(Phase::kMop), 6, Phase::kMop),
-                 initial_parameters(config.network(Phase::kBp), 6, Phase::kBp)};
+  Weights newest{state.next_round, some(Phase::kMop, 6), some(Phase::kBp, 6)};
   state.published = {older, newest};
-  state.best = Candidate{state.next_round - 2, 1.0 / 3.0, initial_parameters(shape, 8, phase)};
+  state.best = Candidate{state.next_round - 2, 1.0 / 3.0, some(phase, 8)};
   return state;
 }
 

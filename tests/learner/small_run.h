@@ -86,6 +86,8 @@ inline Insert made_up_chunk(const RunConfig& config, std::uint64_t round, std::u
     chunk.rows.push_back(static_cast<float>(i % shape.actions));
     chunk.rows.push_back(unit() + taste);
     chunk.rows.push_back(i == 3 ? 0.0f : 0.9f);
+    chunk.rows.push_back(i == 3 ? 1.0f : 0.0f);
+    chunk.rows.push_back(i == 3 ? 0.0f : 0.8f);
     chunk.priorities.push_back(unit());
   }
   return chunk;

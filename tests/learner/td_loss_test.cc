@@ -17,35 +17,49 @@ using testing::HasSubstr;
 constexpr int kActions = 3;
 const RowLayout kLayout{1};
 
-// observation, next observation, action, return, discount
+// observation, next observation, action, return, discount, and those of the risk
 std::vector<float> row(float action, float n_step_return, float discount) {
-  return {0.0f, 0.0f, action, n_step_return, discount};
+  return {0.0f, 0.0f, action, n_step_return, discount, -7.0f, 0.5f};
 }
+const ReturnColumns kReward{kLayout.n_step_return(), kLayout.discount()};
+const ReturnColumns kRisk{kLayout.risk_return(), kLayout.risk_discount()};
 
-// One row, whose networks disagree about the best next action: online says 2, target says 0.
 struct OneRow {
   std::vector<float> values = row(1, 0.5f, 0.9f);
   std::vector<float> weights = {1.0f};
   std::vector<float> online = {0.0f, 1.0f, 0.0f};
-  std::vector<float> online_next = {1.0f, 2.0f, 3.0f};
   std::vector<float> target_next = {4.0f, 0.0f, 2.0f};
 
-  TdLoss loss(const TdLossSettings& settings = {}) const {
-    return td_loss(values, kLayout, weights, {online, online_next, target_next}, kActions,
-                   settings);
+  std::vector<std::size_t> next_actions = {2};
+
+  TdLoss loss(double huber_delta = 1.0, const ReturnColumns& columns = kReward) const {
+    return td_loss(values, kLayout, columns, weights, {online, {}, target_next}, next_actions,
+                   kActions, huber_delta);
   }
 };
 
-TEST(TdLoss, DoubleDqnTakesTheTargetsValueOfTheOnlineNetworksChoice) {
+TEST(TdLoss, BootstrapsFromTheTargetsValueOfTheNextAction) {
+  OneRow example;
   // 1.0 - (0.5 + 0.9 * 2.0)
-  EXPECT_THAT(OneRow{}.loss({.double_q = true}).priorities,
-              ElementsAre(testing::FloatNear(1.3f, 1e-6f)));
+  EXPECT_THAT(example.loss().priorities, ElementsAre(testing::FloatNear(1.3f, 1e-6f)));
+  example.next_actions = {0};  // 1.0 - (0.5 + 0.9 * 4.0)
+  EXPECT_THAT(example.loss().priorities, ElementsAre(testing::FloatNear(3.1f, 1e-6f)));
 }
 
-TEST(TdLoss, PlainDqnTakesTheTargetsOwnMaximum) {
-  // 1.0 - (0.5 + 0.9 * 4.0)
-  EXPECT_THAT(OneRow{}.loss({.double_q = false}).priorities,
-              ElementsAre(testing::FloatNear(3.1f, 1e-6f)));
+TEST(TdLoss, ReadsTheReturnAndTheDiscountOfItsColumns) {
+  // 1.0 - (-7.0 + 0.5 * 2.0)
+  EXPECT_THAT(OneRow{}.loss(1.0, kRisk).priorities, ElementsAre(testing::FloatNear(7.0f, 1e-6f)));
+}
+
+TEST(GreedyActions, TakeTheFirstOfTheLargestQValues) {
+  const std::vector<float> q = {1, 3, 2, 5, 4, 5};
+  EXPECT_THAT(greedy_actions(q, {}, 2.0, kActions), ElementsAre(1u, 0u));
+}
+
+TEST(GreedyActions, TakeTheWeightedRiskOffWhereItIsPositive) {
+  const std::vector<float> q = {1, 3, 2, 5, 4, 5};
+  const std::vector<float> risk = {0, 1, 0, -9, -1, -2};
+  EXPECT_THAT(greedy_actions(q, risk, 2.0, kActions), ElementsAre(2u, 0u));
 }
 
 TEST(TdLoss, DoesNotBootstrapWhereTheDiscountIsZero) {
@@ -57,11 +71,11 @@ TEST(TdLoss, DoesNotBootstrapWhereTheDiscountIsZero) {
 TEST(TdLoss, IsQuadraticInsideHubersDeltaAndLinearOutside) {
   OneRow example;
   example.values = row(1, 0.6f, 0.0f);  // error 0.4
-  EXPECT_NEAR(example.loss({.huber_delta = 0.5}).loss, 0.5 * 0.4 * 0.4, 1e-7);
-  EXPECT_NEAR(example.loss({.huber_delta = 0.5}).q_gradient[1], 0.4, 1e-7);
+  EXPECT_NEAR(example.loss(0.5).loss, 0.5 * 0.4 * 0.4, 1e-7);
+  EXPECT_NEAR(example.loss(0.5).q_gradient[1], 0.4, 1e-7);
   example.values = row(1, 3.0f, 0.0f);  // error -2
-  EXPECT_NEAR(example.loss({.huber_delta = 0.5}).loss, 0.5 * (2.0 - 0.25), 1e-7);
-  EXPECT_NEAR(example.loss({.huber_delta = 0.5}).q_gradient[1], -0.5, 1e-7);
+  EXPECT_NEAR(example.loss(0.5).loss, 0.5 * (2.0 - 0.25), 1e-7);
+  EXPECT_NEAR(example.loss(0.5).q_gradient[1], -0.5, 1e-7);
 }
 
 TEST(TdLoss, GivesAGradientToTheActionsTakenOnly) {
@@ -75,7 +89,8 @@ TEST(TdLoss, WeighsEachRowsLossAndGradientButNotItsPriority) {
   two.values.insert(two.values.end(), second.begin(), second.end());
   two.weights = {1.0f, 0.25f};
   two.online = {0.0f, 1.0f, 0.0f, 1.0f, 0.0f, 0.0f};
-  two.online_next = two.target_next = std::vector<float>(6, 0.0f);
+  two.target_next = std::vector<float>(6, 0.0f);
+  two.next_actions = {0, 0};
   const TdLoss loss = two.loss();
   EXPECT_NEAR(loss.loss, 0.5 * (0.5 * 0.16 + 0.25 * 0.5 * 0.64), 1e-7);
   EXPECT_NEAR(loss.q_gradient[1], 0.5 * 0.4, 1e-7);
@@ -88,13 +103,12 @@ TEST(TdLoss, WeighsEachRowsLossAndGradientButNotItsPriority) {
 TEST(TdLoss, GradientIsTheLosssDerivative) {
   OneRow example;
   for (const double delta : {0.5, 5.0}) {
-    const TdLossSettings settings{.huber_delta = delta};
     const float step = 1e-2f;
     OneRow up = example, down = example;
     up.online[1] += step;
     down.online[1] -= step;
-    EXPECT_NEAR((up.loss(settings).loss - down.loss(settings).loss) / (2.0 * step),
-                example.loss(settings).q_gradient[1], 1e-5);
+    EXPECT_NEAR((up.loss(delta).loss - down.loss(delta).loss) / (2.0 * step),
+                example.loss(delta).q_gradient[1], 1e-5);
   }
 }
 

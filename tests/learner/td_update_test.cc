@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "learner/q_network.h"
+#include "learner/td_loss.h"
 #include "proto/failure.h"
 #include "proto/random.h"
 
@@ -30,7 +31,10 @@ Batch random_batch(std::uint64_t number, int rows) {
     }
     batch.rows.push_back(unit(draw++) < 0.5 ? 0.0f : 1.0f);
     batch.rows.push_back(static_cast<float>(4.0 * unit(draw++) - 2.0));
-    batch.rows.push_back(unit(draw++) < 0.2 ? 0.0f : 0.9f);
+    const bool ends = unit(draw++) < 0.2;
+    batch.rows.push_back(ends ? 0.0f : 0.9f);
+    batch.rows.push_back(static_cast<float>(unit(draw++)));
+    batch.rows.push_back(ends ? 0.0f : 0.7f);
     batch.keys.push_back(static_cast<std::uint64_t>(i));
     batch.weights.push_back(static_cast<float>(0.1 + 0.9 * unit(draw++)));
   }
@@ -38,7 +42,7 @@ Batch random_batch(std::uint64_t number, int rows) {
   return batch;
 }
 
-// The same training step by hand, in doubles, for one hidden layer.
+// The same training step of one network by hand, in doubles, for one hidden layer.
 class HandTrainer {
  public:
   HandTrainer(const DqnSettings& dqn, const std::vector<float>& parameters)
@@ -48,8 +52,15 @@ class HandTrainer {
         mean_(online_.size()),
         mean_squared_(online_.size()) {}
 
+  // Q-values of a row's next observation, by the network that chooses the next action.
+  std::vector<double> next_q(const float* row) const {
+    std::vector<double> unused;
+    return forward(dqn_.double_q ? online_ : target_, row + kObservations, unused);
+  }
+
   // Returns the loss.
-  double update(const Batch& batch, double learning_rate) {
+  double update(const Batch& batch, double learning_rate, const ReturnColumns& columns,
+                const std::vector<int>& next_actions) {
     std::vector<double> gradient(online_.size(), 0.0);
     const double rows = static_cast<double>(batch.weights.size());
     double loss = 0.0;
@@ -60,11 +71,8 @@ class HandTrainer {
       const std::vector<double> q = forward(online_, row, hidden);
       std::vector<double> unused;
       const std::vector<double> next = forward(target_, row + kObservations, unused);
-      const std::vector<double> choice =
-          dqn_.double_q ? forward(online_, row + kObservations, unused) : next;
-      const double target =
-          row[kLayout.n_step_return()] +
-          static_cast<double>(row[kLayout.discount()]) * next[choice[1] > choice[0]];
+      const double target = row[columns.n_step_return] +
+                            static_cast<double>(row[columns.discount]) * next[next_actions[i]];
       const double error = q[action] - target;
       const double delta = dqn_.huber_delta;
       loss +=
@@ -143,41 +151,89 @@ void expect_near(const std::vector<float>& actual, const std::vector<double>& ex
   }
 }
 
-TdState start(const NetworkShape& shape) {
-  return initial_td_state(initial_parameters(shape, 5, Phase::kMop));
+TdState start(const NetworkShape& shape, const DqnSettings& dqn) {
+  return initial_td_state(initial_parameters(shape, 5, Phase::kMop, dqn.networks()));
+}
+
+DqnSettings with_risk_weight(double weight) {
+  DqnSettings dqn;
+  dqn.risk_weight = weight;
+  return dqn;
+}
+
+std::vector<double> joined(std::vector<double> first, const std::vector<double>& second) {
+  first.insert(first.end(), second.begin(), second.end());
+  return first;
+}
+
+// Of Q - risk_weight * max(0, risk).
+std::vector<int> next_actions(const Batch& batch, const HandTrainer& reward,
+                              const HandTrainer& risk, double risk_weight) {
+  std::vector<int> actions;
+  for (std::size_t i = 0; i < batch.weights.size(); ++i) {
+    const float* row = batch.rows.data() + i * kLayout.stride();
+    const std::vector<double> q = reward.next_q(row), r = risk.next_q(row);
+    actions.push_back(q[1] - risk_weight * std::max(0.0, r[1]) >
+                      q[0] - risk_weight * std::max(0.0, r[0]));
+  }
+  return actions;
 }
 
 TEST(TdUpdate, AgreesWithAHandComputation) {
-  for (const bool double_q : {true, false}) {
-    for (const double norm_max : {0.05, 100.0}) {
-      DqnSettings dqn;
-      dqn.double_q = double_q;
-      dqn.huber_delta = 0.7;
-      dqn.gradient_norm_max = norm_max;
-      dqn.target_copy_updates = 3;
-      TdUpdate update(kShape, dqn, "cpu", start(kShape));
-      HandTrainer hand(dqn, start(kShape).online);
-      for (std::uint64_t i = 0; i < 5; ++i) {
-        const Batch batch = random_batch(i, 16);
-        const TdUpdate::Result result = update.update(batch, 1e-2);
-        EXPECT_NEAR(result.loss, hand.update(batch, 1e-2), 1e-5);
-        EXPECT_GT(result.gradient_norm, 0.05);  // so that the small limit clips
-        const TdState state = update.state();
-        expect_near(state.online, hand.online(), 1e-5, "online");
-        expect_near(state.target, hand.target(), 1e-5, "target");
-        expect_near(state.mean_gradient, hand.mean(), 1e-6, "mean gradient");
-        expect_near(state.mean_squared_gradient, hand.mean_squared(), 1e-7, "mean square");
+  for (const double risk_weight : {0.0, 1.5}) {
+    for (const bool double_q : {true, false}) {
+      for (const double norm_max : {0.05, 100.0}) {
+        DqnSettings dqn = with_risk_weight(risk_weight);
+        dqn.double_q = double_q;
+        dqn.huber_delta = 0.7;
+        dqn.gradient_norm_max = norm_max;
+        dqn.target_copy_updates = 3;
+        TdUpdate update(kShape, dqn, "cpu", start(kShape, dqn));
+        const auto initial = initial_parameters(kShape, 5, Phase::kMop, 2);
+        const auto half = initial.begin() + static_cast<std::ptrdiff_t>(kShape.parameters());
+        HandTrainer reward(dqn, {initial.begin(), half});
+        HandTrainer risk(dqn, {half, initial.end()});
+        const bool both = risk_weight > 0.0;
+        for (std::uint64_t i = 0; i < 5; ++i) {
+          const Batch batch = random_batch(i, 16);
+          const TdUpdate::Result result = update.update(batch, 1e-2);
+          const auto actions = next_actions(batch, reward, risk, risk_weight);
+          double loss =
+              reward.update(batch, 1e-2, {kLayout.n_step_return(), kLayout.discount()}, actions);
+          const double risk_loss =
+              risk.update(batch, 1e-2, {kLayout.risk_return(), kLayout.risk_discount()}, actions);
+          if (both) loss += risk_loss;
+          EXPECT_NEAR(result.loss, loss, 1e-5);
+          EXPECT_GT(result.gradient_norm, 0.05);  // so that the small limit clips
+          const auto of = [&](auto member) {
+            return both ? joined((reward.*member)(), (risk.*member)()) : (reward.*member)();
+          };
+          const TdState state = update.state();
+          expect_near(state.online, of(&HandTrainer::online), 1e-5, "online");
+          expect_near(state.target, of(&HandTrainer::target), 1e-5, "target");
+          expect_near(state.mean_gradient, of(&HandTrainer::mean), 1e-6, "mean gradient");
+          expect_near(state.mean_squared_gradient, of(&HandTrainer::mean_squared), 1e-7,
+                      "mean square");
+        }
       }
     }
   }
 }
 
+TEST(TdUpdate, AddsUpThePrioritiesOfBothNetworks) {
+  const Batch batch = random_batch(0, 8);
+  const DqnSettings one = with_risk_weight(0.0), both = with_risk_weight(1e-9);
+  const auto reward = TdUpdate(kShape, one, "cpu", start(kShape, one)).update(batch, 1e-3);
+  const auto sum = TdUpdate(kShape, both, "cpu", start(kShape, both)).update(batch, 1e-3);
+  for (std::size_t i = 0; i < 8; ++i) EXPECT_GT(sum.priorities[i], reward.priorities[i]);
+}
+
 TEST(TdUpdate, CopiesTheTargetEverySoManyUpdates) {
   DqnSettings dqn;
   dqn.target_copy_updates = 2;
-  TdUpdate update(kShape, dqn, "cpu", start(kShape));
+  TdUpdate update(kShape, dqn, "cpu", start(kShape, dqn));
   update.update(random_batch(0, 8), 1e-2);
-  EXPECT_EQ(update.state().target, start(kShape).online);
+  EXPECT_EQ(update.state().target, start(kShape, dqn).online);
   update.update(random_batch(1, 8), 1e-2);
   EXPECT_EQ(update.state().target, update.parameters());
   update.update(random_batch(2, 8), 1e-2);
@@ -189,8 +245,8 @@ TEST(TdUpdate, ContinuesAnotherObjectsStateBitForBit) {
     const NetworkShape shape{kObservations, {16, 16}, kActions, dueling};
     DqnSettings dqn;
     dqn.target_copy_updates = 7;
-    TdUpdate whole(shape, dqn, "cpu", start(shape));
-    TdUpdate first(shape, dqn, "cpu", start(shape));
+    TdUpdate whole(shape, dqn, "cpu", start(shape, dqn));
+    TdUpdate first(shape, dqn, "cpu", start(shape, dqn));
     for (std::uint64_t i = 0; i < 20; ++i) whole.update(random_batch(i, 32), 1e-3);
     for (std::uint64_t i = 0; i < 10; ++i) first.update(random_batch(i, 32), 1e-3);
     TdUpdate second(shape, dqn, "cpu", first.state());
@@ -201,7 +257,7 @@ TEST(TdUpdate, ContinuesAnotherObjectsStateBitForBit) {
 }
 
 TEST(TdUpdate, ChangesNothingByBeingMade) {
-  TdState state = start(kShape);
+  TdState state = start(kShape, DqnSettings{});
   state.mean_gradient.assign(state.online.size(), 0.5f);
   state.mean_squared_gradient.assign(state.online.size(), 0.25f);
   state.updates = 12;
@@ -232,15 +288,15 @@ TEST(TdUpdate, LearnsTheValuesOfAChain) {
       add_one_hot(batch.rows, s);
       add_one_hot(batch.rows, ends ? -1 : next);
       batch.rows.insert(batch.rows.end(), {static_cast<float>(action), ends ? 1.0f : 0.0f,
-                                           ends ? 0.0f : static_cast<float>(kGamma)});
+                                           ends ? 0.0f : static_cast<float>(kGamma), 0.0f, 0.0f});
       batch.weights.push_back(1.0f);
     }
   }
   for (const bool dueling : {false, true}) {
     const NetworkShape shape{kStates, {32}, 2, dueling};
-    DqnSettings dqn;
+    DqnSettings dqn = with_risk_weight(0.0);
     dqn.target_copy_updates = 50;
-    TdUpdate update(shape, dqn, "cpu", start(shape));
+    TdUpdate update(shape, dqn, "cpu", start(shape, dqn));
     for (int i = 0; i < 3000; ++i) update.update(batch, 3e-3);
     QNetwork network(shape, "cpu");
     network.set_parameters(update.parameters());
@@ -253,7 +309,7 @@ TEST(TdUpdate, LearnsTheValuesOfAChain) {
 }
 
 TEST(TdUpdate, RefusesRowsOfAnotherLength) {
-  TdUpdate update(kShape, {}, "cpu", start(kShape));
+  TdUpdate update(kShape, {}, "cpu", start(kShape, {}));
   Batch batch = random_batch(0, 4);
   batch.rows.pop_back();
   EXPECT_THROW(update.update(batch, 1e-3), Failure);

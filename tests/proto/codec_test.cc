@@ -18,11 +18,11 @@ std::vector<float> floats(std::size_t count) {
 }
 
 Insert insert_of(std::size_t rows) {
-  return {7, 2, floats(7 * rows), floats(rows), {3, {1, 2, 250}}};
+  return {7, 2, floats(9 * rows), floats(rows), {3, {1, 2, 250}}};
 }
 
 Batch batch_of(std::size_t rows) {
-  Batch batch{2, floats(7 * rows), {}, floats(rows)};
+  Batch batch{2, floats(9 * rows), {}, floats(rows)};
   for (std::size_t i = 0; i < rows; ++i) batch.keys.push_back(1000 + i);
   return batch;
 }
@@ -49,7 +49,7 @@ std::vector<ReplayRequest> replay_requests() {
 }
 std::vector<ReplayReply> replay_replies() {
   return {Joined{4, {2, std::vector<std::uint8_t>(999, 17)}}, Joined{}, Inserted{}, Opened{4},
-          Batch{2, floats(14), {8, 9}, {1.0F, 0.25F}},        Batch{},  Saved{true}};
+          Batch{2, floats(18), {8, 9}, {1.0F, 0.25F}},        Batch{},  Saved{true}};
 }
 std::vector<LearnerRequest> learner_requests() {
   return {WeightsWanted{6}, SelectionOutcome{1, 2, 3, -4.5, 6}};
@@ -209,7 +209,7 @@ TEST(Codec, AnotherReplyIsNoBatchAndADamagedOneIsMalformed) {
 TEST(Codec, RowsMustBeWhole) {
   Insert insert = insert_of(3);
   insert.rows.pop_back();
-  expect_malformed(insert, "20 floats are not whole rows of 7");
+  expect_malformed(insert, "26 floats are not whole rows of 9");
   insert = insert_of(3);
   insert.observations = 4'000'000'000;
   expect_malformed(insert, "observations");
@@ -241,7 +241,7 @@ TEST(Codec, CountAndExponentAreBounded) {
 }
 
 TEST(Codec, ABatchHasAKeyAndAWeightForEachRow) {
-  const Batch good{2, floats(14), {8, 9}, {1.0F, 0.25F}};
+  const Batch good{2, floats(18), {8, 9}, {1.0F, 0.25F}};
   Batch batch = good;
   batch.keys.pop_back();
   EXPECT_THROW(decode_replay_reply(encode(ReplayReply(batch))), Malformed);

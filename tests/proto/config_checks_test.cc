@@ -65,7 +65,7 @@ const std::vector<Contradiction>& contradictions() {
       {[](RunConfig& c) {
          mop(c).hidden = {4096, 4096};
        },
-       "mop.hidden = [4096, 4096] makes a network"},
+       "mop.hidden = [4096, 4096] makes a planner"},
       {[](RunConfig& c) {
          c.evaluation.seeds = {3, 4, 3};
        },

@@ -5,13 +5,19 @@
 #include <cmath>
 #include <limits>
 
+#include "actor/driving/clearance.h"
 #include "proto/transition.h"
 #include "tests/actor/driving/scenes.h"
 
 namespace corridor::driving {
 namespace {
 
-const DrivingSettings kSettings = default_settings();
+// Without clearances, but where a test is about them.
+const DrivingSettings kSettings = [] {
+  DrivingSettings settings = default_settings();
+  settings.planner.clearance_steps = 0;
+  return settings;
+}();
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 
 float gap(double gap_m) { return static_cast<float>(gap_m / (gap_m + 15.0)); }
@@ -36,7 +42,8 @@ void expect_near(const std::vector<float>& got, const std::vector<float>& expect
 }
 
 TEST(Observations, AreAsLongAsTheirShapesSay) {
-  EXPECT_EQ(mop_shape(5, 3).observations, 28);
+  EXPECT_EQ(mop_shape(5, 3, 0).observations, 28);
+  EXPECT_EQ(mop_shape(5, 3, 2).observations, 40);
   EXPECT_EQ(bp_shape(3).observations, 24);
 }
 
@@ -80,6 +87,24 @@ TEST(MopObservation, HasEveryIndexOfTheTable) {
                                                                0,
                                                                0,
                                                                0});
+}
+
+TEST(MopObservation, EndsWithTheScaledClearancesHoweverTheWindowLies) {
+  DrivingSettings settings = default_settings();
+  settings.planner.clearance_steps = 2;
+  const Scene scene = {ego_in_the_middle(),
+                       {{.id = 3, .s_m = 100.0, .d_m = 4.8 - 2.4, .speed_mps = 10.0}}};
+  std::vector<double> clearances_m(12);
+  predicted_clearances_m(scene, settings, clearances_m);
+  for (const Command command : {Command::kKeep, Command::kLeft}) {
+    std::vector<float> out(40, kNaN);
+    observe_mop(scene, corridor_gaps(scene, settings), window_for(command, scene.ego, settings),
+                settings, out);
+    for (std::size_t i = 0; i < clearances_m.size(); ++i) {
+      EXPECT_EQ(out[28 + i], static_cast<float>(clearances_m[i] / 2.0)) << i;
+    }
+    EXPECT_NEAR(out[28 + 4], 0.3, 1e-6);  // 0.6 m between the sides, no corridor change, braking
+  }
 }
 
 TEST(MopObservation, ShowsASwitchWindowFromRightToLeft) {

@@ -27,12 +27,6 @@ TEST(QNetwork, ComputesAHandWorkedExample) {
   ASSERT_EQ(q.size(), 2u);
   EXPECT_FLOAT_EQ(q[0], 6.0f);
   EXPECT_FLOAT_EQ(q[1], 0.0f);
-  EXPECT_EQ(network.greedy(observation), 0);
-}
-
-TEST(QNetwork, TakesTheLowestOfEqualActions) {
-  QNetwork network({1, {1}, 3, false}, std::vector<float>(1 + 1 + 3 + 3, 0.0f));
-  EXPECT_EQ(network.greedy(std::vector<float>{1.0f}), 0);
 }
 
 class AgainstLibTorch : public testing::TestWithParam<NetworkShape> {};
@@ -60,18 +54,6 @@ INSTANTIATE_TEST_SUITE_P(Shapes, AgainstLibTorch,
                                          NetworkShape{24, {64, 64}, 3, true},
                                          NetworkShape{40, {128, 96, 33}, 15, true},
                                          NetworkShape{3, {5}, 2, false}));
-
-TEST(TdErrors, AreThoseOfTheDefinition) {
-  // One input, Q(x) = [x, 2x] for x >= 0.
-  QNetwork network({1, {1}, 2, false}, {1, 0, 1, 2, 0, 0});
-  // observation, next, action, return, discount
-  const std::vector<float> rows = {1, 3, 0, 0.5f, 0.9f,   // |0.5 + 0.9 * 6 - 1|
-                                   2, 0, 1, 1.0f, 0.0f};  // |1 - 4|
-  const auto errors = td_errors(rows, network);
-  ASSERT_EQ(errors.size(), 2u);
-  EXPECT_NEAR(errors[0], 4.9f, 1e-6);
-  EXPECT_NEAR(errors[1], 3.0f, 1e-6);
-}
 
 }  // namespace
 }  // namespace corridor::policy

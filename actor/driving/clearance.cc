@@ -1,0 +1,58 @@
+#include "actor/driving/clearance.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "actor/driving/action.h"
+#include "actor/driving/trajectory.h"
+
+namespace corridor::driving {
+namespace {
+
+double separation_m(const Ego& ego, const Vehicle& other, const EgoSettings& size) {
+  const double along_m = std::max(other.s_m - other.length_m - ego.s_m,  // it is ahead
+                                  ego.s_m - size.length_m - other.s_m);  // or behind
+  const double across_m = std::abs(ego.d_m - other.d_m) - (size.width_m + other.width_m) / 2;
+  return std::max(along_m, across_m);
+}
+
+Ego after_step(const Ego& ego, const MopAction& action, const DrivingSettings& settings) {
+  const Target target = target_for(action, ego, settings);
+  const TrajectoryPoint end = Trajectory(ego, target, settings).at(settings.step_s);
+  return {end.s_m,
+          end.d_m,
+          end.speed_mps,
+          end.acceleration_mps2,
+          end.lateral_speed_mps,
+          target.set_point_mps};
+}
+
+}  // namespace
+
+void predicted_clearances_m(const Scene& scene, const DrivingSettings& settings,
+                            std::span<double> out) {
+  const auto& changes_mps = settings.planner.speed_changes_mps;
+  const auto unchanged = std::ranges::min_element(
+      changes_mps, {}, [](double change_mps) { return std::abs(change_mps); });
+  const int speed_changes[] = {0, static_cast<int>(unchanged - changes_mps.begin())};
+  std::size_t next = 0;
+  for (int corridor_change = -1; corridor_change <= 1; ++corridor_change) {
+    for (const int speed_change : speed_changes) {
+      Ego ego = scene.ego;
+      for (int step = 1; step <= settings.planner.clearance_steps; ++step) {
+        ego = after_step(ego, {corridor_change, speed_change}, settings);
+        const double time_s = step * settings.step_s;
+        double nearest_m = kClearanceMax_m;
+        for (Vehicle other : scene.others) {
+          other.s_m += other.speed_mps * time_s;
+          other.d_m += other.lateral_speed_mps * time_s;
+          nearest_m = std::min(nearest_m, separation_m(ego, other, settings.ego));
+        }
+        out[next++] = nearest_m;
+      }
+    }
+  }
+}
+
+}  // namespace corridor::driving
