@@ -165,6 +165,26 @@ TEST(Scenarios, ThePapersBudgetsAreThePapers) {
   EXPECT_EQ(paper.simulation.episode_steps, 1000);
 }
 
+// Anything else would make results on them no comparison.
+TEST(Scenarios, TheOtherTrafficDiffersInTrafficOnly) {
+  const RunConfig paper = load_run_config(kScenarios / "paper.toml");
+  for (const char* name : {"calm.toml", "risky.toml", "dense.toml", "sparse.toml"}) {
+    RunConfig other = load_run_config(kScenarios / name);
+    EXPECT_NE(to_toml(other), to_toml(paper)) << name;
+    other.traffic = paper.traffic;
+    EXPECT_EQ(to_toml(other), to_toml(paper)) << name;
+  }
+}
+
+TEST(Scenarios, AnEpisodeOfHalfSecondStepsLastsAsLong) {
+  const RunConfig paper = load_run_config(kScenarios / "paper.toml");
+  RunConfig half = load_run_config(kScenarios / "paper_half_second.toml");
+  EXPECT_EQ(half.simulation.step_s, paper.simulation.step_s / 2);
+  EXPECT_EQ(half.simulation.episode_steps, paper.simulation.episode_steps * 2);
+  half.simulation = paper.simulation;
+  EXPECT_EQ(to_toml(half), to_toml(paper));
+}
+
 TEST(Scenarios, TheSmokeTestDiffersInBudgetsOnly) {
   const RunConfig paper = load_run_config(kScenarios / "paper.toml");
   RunConfig smoke = load_run_config(kScenarios / "smoke.toml");
