@@ -24,6 +24,7 @@ struct Arguments {
   std::string planners;
   std::uint64_t seed = 0;
   std::int64_t steps = 0;
+  std::string networks;
   std::string fcd;
   std::string episode;
 };
@@ -43,7 +44,9 @@ int evaluate(const Arguments& arguments, const RunConfig& config, const RunDirec
              world::World& world) {
   const actor::EvaluationTask task{planner_pair(arguments.planners), arguments.seed,
                                    arguments.steps, arguments.fcd};
-  actor::evaluate(config, trained_networks(directory), task, directory, world,
+  const RunDirectory trained =
+      arguments.networks.empty() ? directory : RunDirectory::open(arguments.networks);
+  actor::evaluate(config, trained_networks(trained), task, directory, world,
                   [&](std::int64_t steps) {
                     std::printf("%lld/%lld\n", static_cast<long long>(steps),
                                 static_cast<long long>(task.steps));
@@ -91,6 +94,8 @@ int main(int argc, char** argv) {
   app.add_option("--evaluate", arguments.planners, "evaluate this planner pair");
   app.add_option("--seed", arguments.seed, "evaluate: seed of the traffic");
   app.add_option("--steps", arguments.steps, "evaluate: steps to drive");
+  app.add_option("--networks", arguments.networks,
+                 "evaluate: run directory whose networks drive, if not RUN");
   app.add_option("--fcd", arguments.fcd,
                  "SUMO writes its trajectories here (evaluate: a directory; redrive: a file)");
   app.add_option("--redrive", arguments.episode, "drive this recorded episode again");

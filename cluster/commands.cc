@@ -48,6 +48,8 @@ void declare_run(CLI::App& app, std::filesystem::path& run) {
 void declare_evaluate(CLI::App& app, Arguments& arguments) {
   EvaluateOptions& options = arguments.evaluate;
   declare_run(app, options.run);
+  app.add_option("--scenario", options.scenario,
+                 "evaluate in this scenario's world (TOML); the run's own unless given");
   std::string planners = "planner pairs, separated by commas; those marked * unless given:";
   for (const PlannerPair& pair : kPlannerPairs) {
     planners += fmt::format("\n{}{} ({})", pair.name, pair.by_default ? "*" : "", pair.meaning);
@@ -95,6 +97,7 @@ const Command kCommands[] = {
      [](const Arguments& a) { return resume(a.resume, a.program); }},
     {"evaluate", "Drive planners greedily on held-out traffic and print the paper's table",
      "corridor evaluate runs/first\n"
+     "  corridor evaluate runs/first --scenario scenarios/dense.toml\n"
      "  corridor evaluate runs/first --planners hierarchical,sumo --seeds 1002,1003 --json "
      "out.json",
      declare_evaluate, [](const Arguments& a) { return evaluate(a.evaluate); }},

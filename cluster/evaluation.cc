@@ -19,6 +19,7 @@
 #include "proto/planner_pairs.h"
 #include "proto/run_config.h"
 #include "proto/schedule.h"
+#include "scenarios/sumo_files.h"
 
 namespace corridor::cluster {
 namespace {
@@ -141,11 +142,45 @@ void check_can_drive(const std::string& planner, const RunDirectory& directory,
   }
 }
 
+RunDirectory scenario_directory(const RunDirectory& run, const std::filesystem::path& scenario) {
+  const RunConfig trained = load_run_config(run.config());
+  const RunConfig world = load_run_config(scenario);
+  RunConfig config = trained;
+  config.road = world.road;
+  config.traffic = world.traffic;
+  config.simulation = world.simulation;
+  config.ego = world.ego;
+  config.bp_reward = world.bp_reward;
+  config.evaluation = world.evaluation;
+  if (config.road.lanes != trained.road.lanes) {
+    throw Failure("{} has {} lanes, and the networks of {} were trained on {}", scenario.string(),
+                  config.road.lanes, run.root().string(), trained.road.lanes);
+  }
+  const std::filesystem::path root = run.root() / "scenarios" / scenario.stem();
+  const std::string text = to_toml(config);
+  if (std::filesystem::exists(root / "config.toml")) {
+    RunDirectory directory = RunDirectory::open(root);
+    if (read_file(directory.config()) == text) return directory;
+    throw Failure("{} holds what was driven with other settings than {}'s: move it away",
+                  root.string(), scenario.string());
+  }
+  // config.toml is written last: without it, somebody was stopped here.
+  on_disk("remove", root, [&] { std::filesystem::remove_all(root); });
+  on_disk("create", root, [&] { std::filesystem::create_directories(root.parent_path()); });
+  RunDirectory directory = RunDirectory::create(root);
+  scenarios::write_sumo_files(config, directory.network().parent_path());
+  write_file(directory.manifest(), read_file(run.manifest()));
+  write_file(directory.config(), text);
+  return directory;
+}
+
 int evaluate(const EvaluateOptions& options) {
-  const RunDirectory directory = RunDirectory::open(options.run);
+  const RunDirectory trained = RunDirectory::open(options.run);
+  const RunDirectory directory =
+      options.scenario.empty() ? trained : scenario_directory(trained, options.scenario);
   const RunConfig config = load_run_config(directory.config());
   const std::vector<EvaluationJob> jobs = jobs_of(options, config);
-  for (const EvaluationJob& job : jobs) check_can_drive(job.planner, directory, config);
+  for (const EvaluationJob& job : jobs) check_can_drive(job.planner, trained, config);
   const int parallel =
       options.jobs.value_or(std::max(1, static_cast<int>(std::thread::hardware_concurrency())));
   if (parallel < 1) throw Failure("--jobs {}: at least 1 is needed", parallel);
@@ -153,7 +188,7 @@ int evaluate(const EvaluateOptions& options) {
 
   std::vector<ProcessPlan> plan;
   for (const EvaluationJob& job : jobs) {
-    plan.push_back(evaluation_process(job, directory, program_directory(), options.fcd));
+    plan.push_back(evaluation_process(job, directory, trained, program_directory(), options.fcd));
   }
   Monitor monitor(jobs, plan);
   const Ending ending = run_queue(plan, parallel, Limits{}, [&] { monitor.tick(); });

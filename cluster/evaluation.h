@@ -14,6 +14,7 @@ namespace corridor::cluster {
 
 struct EvaluateOptions {
   std::filesystem::path run = {};
+  std::filesystem::path scenario = {};     // empty: the run's own
   std::vector<std::string> planners = {};  // empty: all
   std::optional<std::int64_t> steps =
       {};                                 // for each planner and seed = {}; else [evaluation] steps
@@ -22,6 +23,12 @@ struct EvaluateOptions {
   std::filesystem::path json = {};        // empty: none
   std::filesystem::path fcd = {};         // directory of SUMO's trajectories = {}; empty: none
 };
+
+// Where a run's planners are evaluated in another scenario, RUN/scenarios/<name of its file>: a run
+// directory without checkpoints. Road, traffic, simulation, ego, BP reward and [evaluation] are the
+// scenario's, all else the run's. Throws Failure when the run's networks do not fit that world, or
+// when the directory holds what was driven with other settings.
+RunDirectory scenario_directory(const RunDirectory& run, const std::filesystem::path& scenario);
 
 // Drives each planner on the test episodes of each seed and prints the table. Returns the exit
 // status: 0, or 128 + signal when stopped by one. Throws Failure for planners that there are not or

@@ -36,7 +36,7 @@ std::vector<EvaluationJob> evaluation_jobs(const std::vector<std::string>& plann
 }
 
 ProcessPlan evaluation_process(const EvaluationJob& job, const RunDirectory& directory,
-                               const std::filesystem::path& programs,
+                               const RunDirectory& trained, const std::filesystem::path& programs,
                                const std::filesystem::path& fcd) {
   const std::string name = fmt::format("evaluate-{}-{}", job.planner, job.seed);
   ProcessPlan plan{
@@ -44,6 +44,9 @@ ProcessPlan evaluation_process(const EvaluationJob& job, const RunDirectory& dir
       {(programs / "corridor-actor").string(), directory.root().string(), "--evaluate", job.planner,
        "--seed", std::to_string(job.seed), "--steps", std::to_string(job.steps)},
       directory.log(name)};
+  if (trained.root() != directory.root()) {
+    plan.argv.insert(plan.argv.end(), {"--networks", trained.root().string()});
+  }
   if (!fcd.empty()) plan.argv.insert(plan.argv.end(), {"--fcd", fcd.string()});
   return plan;
 }

@@ -43,9 +43,10 @@ struct EvaluationJob {
 std::vector<EvaluationJob> evaluation_jobs(const std::vector<std::string>& planners,
                                            const std::vector<std::uint64_t>& seeds,
                                            std::int64_t steps);
-// `fcd`: where SUMO's trajectories go; empty for none.
+// In the world of `directory`, with the networks of `trained`. `fcd`: where SUMO's trajectories go;
+// empty for none.
 ProcessPlan evaluation_process(const EvaluationJob& job, const RunDirectory& directory,
-                               const std::filesystem::path& programs,
+                               const RunDirectory& trained, const std::filesystem::path& programs,
                                const std::filesystem::path& fcd);
 // What that process writes.
 std::filesystem::path evaluation_file(const EvaluationJob& job, const RunDirectory& directory);

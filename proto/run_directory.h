@@ -7,6 +7,7 @@
 //   metrics/<process>.jsonl      one JSON-lines file a process (proto/metrics.h)
 //   checkpoints/<round>/         proto/checkpoints.h
 //   evaluation/                  <planner>_<seed>.json; episodes/<planner>_<seed>_<episode>.json
+//   scenarios/<name>/            the same, of evaluations in another scenario's world
 #pragma once
 
 #include <cstdint>

@@ -53,12 +53,16 @@ TEST_F(Plan, EveryPlannerIsEvaluatedOnEverySeed) {
 
 TEST_F(Plan, TrajectoriesAreWrittenOnlyWhenAskedFor) {
   const EvaluationJob job{"rules+mop", 7, 100};
-  EXPECT_THAT(evaluation_process(job, directory_, "/p", "").argv,
+  EXPECT_THAT(evaluation_process(job, directory_, directory_, "/p", "").argv,
               ElementsAre("/p/corridor-actor", root_, "--evaluate", "rules+mop", "--seed", "7",
                           "--steps", "100"));
-  EXPECT_THAT(evaluation_process(job, directory_, "/p", "/tmp/fcd").argv,
+  EXPECT_THAT(evaluation_process(job, directory_, directory_, "/p", "/tmp/fcd").argv,
               ElementsAre("/p/corridor-actor", root_, "--evaluate", "rules+mop", "--seed", "7",
                           "--steps", "100", "--fcd", "/tmp/fcd"));
+  const RunDirectory other = RunDirectory::create(directory_.root() / "other");
+  EXPECT_THAT(evaluation_process(job, other, directory_, "/p", "").argv,
+              ElementsAre("/p/corridor-actor", other.root().string(), "--evaluate", "rules+mop",
+                          "--seed", "7", "--steps", "100", "--networks", root_));
   EXPECT_EQ(evaluation_file(job, directory_), directory_.evaluation() / "rules+mop_7.json");
 }
 
