@@ -41,6 +41,8 @@ std::unique_ptr<driving::BehaviourPlanner> make_behaviour_planner(const PlannerP
       return std::make_unique<ConstantBp>(Command::kLeft, settings);
     case BpKind::kAlwaysRight:
       return std::make_unique<ConstantBp>(Command::kRight, settings);
+    case BpKind::kRandom:
+      return std::make_unique<driving::RandomBp>(settings);
     case BpKind::kNone:
       break;
   }

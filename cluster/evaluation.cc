@@ -10,10 +10,11 @@
 #include <thread>
 
 #include "cluster/checkpoint.h"
-#include "cluster/evaluation_table.h"
+#include "cluster/evaluation_result.h"
 #include "cluster/local.h"
 #include "cluster/plan.h"
 #include "cluster/progress.h"
+#include "cluster/results_tables.h"
 #include "cluster/text.h"
 #include "proto/failure.h"
 #include "proto/planner_pairs.h"
@@ -125,7 +126,7 @@ void check_can_drive(const std::string& planner, const RunDirectory& directory,
                      const RunConfig& config) {
   const PlannerPair& pair = planner_pair(planner);
   const bool learned_bp = pair.bp == BpKind::kLearned;
-  if (!learned_bp && pair.mop != MopKind::kLearned) return;
+  if (!pair.learned()) return;
   const std::optional<Checkpoint> checkpoint = newest_checkpoint(directory);
   if (!checkpoint) {
     throw Failure(
@@ -198,13 +199,18 @@ int evaluate(const EvaluateOptions& options) {
   }
 
   std::vector<EvaluationResult> results;
+  std::vector<SeedResult> of_this_run;
   for (const EvaluationJob& job : jobs) {
     const std::filesystem::path file = evaluation_file(job, directory);
     results.push_back(parse_evaluation(read_json(file), file.string()));
+    of_this_run.push_back({config.run.seed, results.back()});
   }
-  fmt::print("\n{}: {} steps for each planner and seed\n{}", directory.root().string(),
-             grouped(jobs.front().steps),
-             evaluation_table(results, config.simulation.step_s, config.run.seed));
+  fmt::print("\n{}: {} steps for each planner and seed\n", directory.root().string(),
+             grouped(jobs.front().steps));
+  for (const Table& table : results_tables(arms_of(of_this_run))) {
+    fmt::print("\n{}", text_of(table));
+  }
+  fmt::print("\n{}", text_of(paper_table()));
   if (!options.json.empty()) {
     write_file(options.json, evaluation_json(results).dump(2) + "\n");
   }

@@ -1,5 +1,6 @@
-// The pairs of planners that can be evaluated: the rows of the paper's Table I, in its order, then
-// the naive ones that a table must be read against. What the command may ask an actor for.
+// The pairs of planners that can be evaluated, in the order of a table's rows: those of the paper's
+// Table I, the naive ones that a table must be read against, and those under the BP of MoP training.
+// What the command may ask an actor for.
 #pragma once
 
 #include <string_view>
@@ -12,7 +13,8 @@ enum class BpKind {
   kAlwaysKeep,  // asks for the same at every step
   kAlwaysLeft,
   kAlwaysRight,
-  kNone,  // SUMO's own driver model drives: there is no planner
+  kRandom,  // the one that the MoP is trained under: tells how well a MoP serves
+  kNone,    // SUMO's own driver model drives: there is no planner
 };
 enum class MopKind { kLearned, kRules, kNone };
 
@@ -24,6 +26,7 @@ struct PlannerPair {
   bool by_default;  // evaluated when no pairs are named
 
   bool world_drives() const { return bp == BpKind::kNone; }
+  bool learned() const { return bp == BpKind::kLearned || mop == MopKind::kLearned; }
 };
 
 inline constexpr PlannerPair kPlannerPairs[] = {
@@ -32,12 +35,14 @@ inline constexpr PlannerPair kPlannerPairs[] = {
     {"rules+mop", "rule-based BP over learned MoP", BpKind::kRules, MopKind::kLearned, true},
     {"bp+rules", "learned BP over rule-based MoP", BpKind::kLearned, MopKind::kRules, true},
     {"sumo", "SUMO drives the ego", BpKind::kNone, MopKind::kNone, true},
-    {"keep+rules", "stay in the lane", BpKind::kAlwaysKeep, MopKind::kRules, false},
     {"left+rules", "go to the left lane and stay", BpKind::kAlwaysLeft, MopKind::kRules, false},
-    {"right+rules", "go to the right lane and stay", BpKind::kAlwaysRight, MopKind::kRules, false},
-    {"keep+mop", "stay in the lane", BpKind::kAlwaysKeep, MopKind::kLearned, false},
     {"left+mop", "go to the left lane and stay", BpKind::kAlwaysLeft, MopKind::kLearned, false},
+    {"keep+mop", "stay in the lane", BpKind::kAlwaysKeep, MopKind::kLearned, false},
+    {"keep+rules", "stay in the lane", BpKind::kAlwaysKeep, MopKind::kRules, false},
+    {"right+rules", "go to the right lane and stay", BpKind::kAlwaysRight, MopKind::kRules, false},
     {"right+mop", "go to the right lane and stay", BpKind::kAlwaysRight, MopKind::kLearned, false},
+    {"random+rules", "the BP of MoP training", BpKind::kRandom, MopKind::kRules, false},
+    {"random+mop", "the BP of MoP training", BpKind::kRandom, MopKind::kLearned, false},
 };
 
 // Throws Failure naming the pairs that there are.

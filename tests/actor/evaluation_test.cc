@@ -72,7 +72,7 @@ TEST_F(Evaluation, WritesTheSameFilesTwice) {
 }
 
 TEST_F(Evaluation, AnEpisodeDrivenAgainHasTheSameTrajectory) {
-  for (const char* pair : {"rules", "hierarchical", "sumo"}) {
+  for (const char* pair : {"rules", "hierarchical", "sumo", "random+rules"}) {
     evaluate_pair(pair);
     FakeWorld world(config);
     const Redriven result =

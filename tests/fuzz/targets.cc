@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "cluster/evaluation_table.h"
+#include "cluster/evaluation_result.h"
 #include "cluster/progress.h"
 #include "learner/checkpoint.h"
 #include "proto/codec.h"

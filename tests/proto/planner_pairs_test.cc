@@ -17,13 +17,23 @@ TEST(PlannerPairs, AreFoundByName) {
   EXPECT_EQ(planner_pair("rules+mop").mop, MopKind::kLearned);
   EXPECT_TRUE(planner_pair("sumo").world_drives());
   EXPECT_FALSE(planner_pair("left+rules").world_drives());
+  EXPECT_EQ(planner_pair("random+rules").bp, BpKind::kRandom);
 }
 
-TEST(PlannerPairs, ThePapersRowsAreEvaluatedByDefaultAndTheNaiveOnesOnRequest) {
+TEST(PlannerPairs, ThePapersRowsAreEvaluatedByDefaultAndTheOthersOnRequest) {
   for (const PlannerPair& pair : kPlannerPairs) {
-    const bool naive = pair.bp == BpKind::kAlwaysKeep || pair.bp == BpKind::kAlwaysLeft ||
-                       pair.bp == BpKind::kAlwaysRight;
-    EXPECT_EQ(pair.by_default, !naive) << pair.name;
+    const bool of_the_paper =
+        pair.bp == BpKind::kLearned || pair.bp == BpKind::kRules || pair.bp == BpKind::kNone;
+    EXPECT_EQ(pair.by_default, of_the_paper) << pair.name;
+  }
+}
+
+TEST(PlannerPairs, AreLearnedWhenEitherPlannerIs) {
+  for (const char* name : {"hierarchical", "rules+mop", "bp+rules", "random+mop"}) {
+    EXPECT_TRUE(planner_pair(name).learned()) << name;
+  }
+  for (const char* name : {"rules", "sumo", "left+rules", "random+rules"}) {
+    EXPECT_FALSE(planner_pair(name).learned()) << name;
   }
 }
 

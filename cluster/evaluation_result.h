@@ -1,5 +1,4 @@
-// What corridor-actor wrote about its greedy episodes -> the paper's table, and the JSON for
-// others. Pure.
+// What corridor-actor wrote about its greedy episodes, as values; the JSON for others. Pure.
 #pragma once
 
 #include <array>
@@ -16,6 +15,7 @@ inline constexpr std::array kCollisionKinds = {"rear_ended", "rear_ending", "sid
 struct EpisodeResult {
   std::int64_t steps = 0;
   double bp_reward = 0.0;
+  double mop_reward = 0.0;
   std::int64_t collisions = 0;
   std::int64_t lane_changes = 0;
   std::int64_t hard_brakes = 0;
@@ -36,19 +36,16 @@ struct EvaluationResult {
   double mean_speed_kph = 0.0;
   double distance_km = 0.0;
   std::vector<EpisodeResult> per_episode;
+
+  // The simulation's step, from distance, mean speed and steps; 1 when the ego stood still.
+  double step_s() const;
 };
 
-// Throws Failure naming `name` (the file) when a field is missing or wrong, or when there is no
-// episode.
+// Throws Failure naming `name` (the file) when a field is missing or wrong, when there is no such
+// planner pair, or no episode.
 EvaluationResult parse_evaluation(const nlohmann::json& json, const std::string& name);
 
 // A list with one object a result: all fields but the episodes.
 nlohmann::ordered_json evaluation_json(const std::vector<EvaluationResult>& results);
-
-// Sums per 1000 steps with 95 % intervals, one row a planner (its seeds together, planners in the
-// order in which they come), collisions by kind, figures per km, lane shares, and the paper's own
-// Table I for comparison. `step_s` is the simulation's, `seed` the bootstrap's.
-std::string evaluation_table(const std::vector<EvaluationResult>& results, double step_s,
-                             std::uint64_t seed);
 
 }  // namespace corridor::cluster

@@ -1,10 +1,9 @@
-#include "cluster/evaluation_table.h"
+#include "cluster/evaluation_result.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 #include "proto/failure.h"
 
@@ -43,14 +42,6 @@ json evaluation(const std::string& planner, std::uint64_t seed) {
           {"per_episode", {episode(1000, 650.0, 0), episode(500, 250.0, 1)}}};
 }
 
-std::string line_with(const std::string& text, const std::string& word) {
-  std::istringstream lines(text);
-  for (std::string line; std::getline(lines, line);) {
-    if (line.starts_with(word)) return line;
-  }
-  return "";
-}
-
 TEST(EvaluationJson, HasOneObjectAResultWithTheDocumentedFieldsInOrder) {
   const auto list = evaluation_json({parse_evaluation(evaluation("rules", 7), "a"),
                                      parse_evaluation(evaluation("sumo", 8), "b")});
@@ -65,36 +56,14 @@ TEST(EvaluationJson, HasOneObjectAResultWithTheDocumentedFieldsInOrder) {
   EXPECT_EQ(json::parse(list[1].dump()), expected);
 }
 
-TEST(EvaluationTable, GivesSumsPer1000StepsOverAllSeedsOfAPlanner) {
-  const auto text = evaluation_table({parse_evaluation(evaluation("rules", 7), "a"),
-                                      parse_evaluation(evaluation("rules", 8), "b")},
-                                     1.0, 1);
-  const std::string row = line_with(text, "rules ");
-  // 900 of reward in 1500 steps; 2 collisions in 3000 (Poisson: 0.242 to 7.22); 80 lane changes.
-  EXPECT_THAT(row, AllOf(HasSubstr("600 ["), HasSubstr("0.67 [0.08, 2.41]"), HasSubstr("26.7 ["),
-                         HasSubstr("45.0 [45.0, 45.0]")));
-}
-
-TEST(EvaluationTable, TakesTheSpeedFromTheTimeStep) {
-  const auto text =
-      evaluation_table({parse_evaluation(evaluation("rules", 7), "a")}, /*step_s=*/0.5, 1);
-  EXPECT_THAT(line_with(text, "rules "), HasSubstr("90.0 [90.0, 90.0]"));
-}
-
-TEST(EvaluationTable, GivesKindsFiguresPerKmLaneSharesAndThePapersTable) {
-  const auto text = evaluation_table({parse_evaluation(evaluation("rules", 7), "a")}, 1.0, 1);
-  EXPECT_THAT(text, AllOf(HasSubstr("side by other"), HasSubstr("collisions/km"),
-                          HasSubstr("100 / 0 / 0"), HasSubstr("The paper's Table I"),
-                          HasSubstr("hierarchical RL             699        2.125")));
-  // 1 collision, 40 lane changes in 18.75 km; 10 hard brakes in 1500 steps.
-  EXPECT_THAT(text, AllOf(HasSubstr("0.0533"), HasSubstr("2.133"), HasSubstr("6.7")));
-}
-
-TEST(EvaluationTable, KeepsThePlannersInTheirOrder) {
-  const auto text = evaluation_table(
-      {parse_evaluation(evaluation("sumo", 7), "a"), parse_evaluation(evaluation("rules", 7), "b")},
-      1.0, 1);
-  EXPECT_LT(text.find("\nsumo"), text.find("\nrules"));
+TEST(EvaluationFile, TellsTheTimeStepByItsSpeed) {
+  EXPECT_DOUBLE_EQ(parse_evaluation(evaluation("rules", 7), "a").step_s(), 1.0);
+  json faster = evaluation("rules", 7);
+  faster["mean_speed_kph"] = 90.0;
+  EXPECT_DOUBLE_EQ(parse_evaluation(faster, "a").step_s(), 0.5);
+  json standing = evaluation("rules", 7);
+  standing["mean_speed_kph"] = standing["distance_km"] = 0.0;
+  EXPECT_EQ(parse_evaluation(standing, "a").step_s(), 1.0);
 }
 
 TEST(EvaluationFile, IsRefusedWhenAFieldIsMissingWrongOrWithoutEpisodes) {
@@ -113,6 +82,11 @@ TEST(EvaluationFile, IsRefusedWhenAFieldIsMissingWrongOrWithoutEpisodes) {
   no_steps["per_episode"][0]["steps"] = 0;
   EXPECT_THROW(parse_evaluation(no_steps, "x"), Failure);
   EXPECT_THROW(parse_evaluation(json::array(), "x"), Failure);
+  json still = evaluation("rules", 7);
+  still["mean_speed_kph"] = 0.0;
+  EXPECT_THROW(parse_evaluation(still, "x"), Failure);
+  EXPECT_THAT([] { parse_evaluation(evaluation("flying", 7), "x"); },
+              ThrowsMessage<Failure>(HasSubstr("flying")));
 }
 
 }  // namespace

@@ -1,0 +1,96 @@
+#include "cluster/evaluation_result.h"
+
+#include <nlohmann/json.hpp>
+
+#include "proto/failure.h"
+#include "proto/json_numbers.h"
+#include "proto/planner_pairs.h"
+
+namespace corridor::cluster {
+namespace {
+
+using nlohmann::json;
+
+template <typename T>
+void read(const json& value, T& into) {
+  if constexpr (std::integral<T>) {
+    into = whole_number<T>(value);
+  } else {
+    value.get_to(into);
+  }
+}
+
+EpisodeResult parse_episode(const json& entry) {
+  EpisodeResult result;
+  read(entry.at("steps"), result.steps);
+  read(entry.at("bp_reward"), result.bp_reward);
+  read(entry.at("mop_reward"), result.mop_reward);
+  read(entry.at("collisions"), result.collisions);
+  read(entry.at("lane_changes"), result.lane_changes);
+  read(entry.at("hard_brakes"), result.hard_brakes);
+  read(entry.at("distance_m"), result.distance_m);
+  result.lane_steps = whole_numbers<std::int64_t>(entry.at("lane_steps"));
+  return result;
+}
+
+}  // namespace
+
+double EvaluationResult::step_s() const {
+  if (mean_speed_kph <= 0.0) return 1.0;
+  return 3600.0 * distance_km / mean_speed_kph / static_cast<double>(steps);
+}
+
+EvaluationResult parse_evaluation(const json& json, const std::string& name) {
+  EvaluationResult result;
+  try {
+    read(json.at("planner"), result.planner);
+    planner_pair(result.planner);
+    read(json.at("seed"), result.seed);
+    read(json.at("steps"), result.steps);
+    read(json.at("episodes"), result.episodes);
+    read(json.at("bp_reward_per_1000"), result.bp_reward_per_1000);
+    read(json.at("collisions"), result.collisions);
+    for (std::size_t kind = 0; kind < kCollisionKinds.size(); ++kind) {
+      read(json.at("collisions_by_kind").at(kCollisionKinds[kind]),
+           result.collisions_by_kind[kind]);
+    }
+    read(json.at("lane_changes"), result.lane_changes);
+    read(json.at("mean_speed_kph"), result.mean_speed_kph);
+    read(json.at("distance_km"), result.distance_km);
+    for (const auto& entry : json.at("per_episode")) {
+      result.per_episode.push_back(parse_episode(entry));
+      if (result.per_episode.back().steps <= 0) throw Failure("an episode of no steps");
+    }
+    if (result.steps <= 0) throw Failure("no steps");
+    if ((result.distance_km > 0.0) != (result.mean_speed_kph > 0.0)) {
+      throw Failure("{} km at {} km/h", result.distance_km, result.mean_speed_kph);
+    }
+  } catch (const std::exception& error) {
+    throw Failure("{} is no evaluation: {}", name, error.what());
+  }
+  if (result.per_episode.empty()) throw Failure("{} is no evaluation: it has no episodes", name);
+  return result;
+}
+
+nlohmann::ordered_json evaluation_json(const std::vector<EvaluationResult>& results) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const EvaluationResult& result : results) {
+    nlohmann::ordered_json kinds = nlohmann::ordered_json::object();
+    for (std::size_t kind = 0; kind < kCollisionKinds.size(); ++kind) {
+      kinds[kCollisionKinds[kind]] = result.collisions_by_kind[kind];
+    }
+    list.push_back({{"planner", result.planner},
+                    {"seed", result.seed},
+                    {"steps", result.steps},
+                    {"episodes", result.episodes},
+                    {"bp_reward_per_1000", result.bp_reward_per_1000},
+                    {"collisions", result.collisions},
+                    {"collisions_by_kind", kinds},
+                    {"lane_changes", result.lane_changes},
+                    {"mean_speed_kph", result.mean_speed_kph},
+                    {"distance_km", result.distance_km}});
+  }
+  return list;
+}
+
+}  // namespace corridor::cluster
