@@ -5,6 +5,7 @@
 #include "cluster/check.h"
 #include "cluster/checkpoint.h"
 #include "cluster/evaluation.h"
+#include "cluster/experiment.h"
 #include "cluster/plan.h"
 #include "cluster/training.h"
 #include "proto/failure.h"
@@ -20,6 +21,7 @@ struct Arguments {
   TrainOptions train;
   ResumeOptions resume;
   EvaluateOptions evaluate;
+  ExperimentOptions experiment;
   std::filesystem::path run;
   std::filesystem::path scenario;
   std::string episode;
@@ -101,6 +103,14 @@ const Command kCommands[] = {
      "  corridor evaluate runs/first --planners hierarchical,sumo --seeds 1002,1003 --json "
      "out.json",
      declare_evaluate, [](const Arguments& a) { return evaluate(a.evaluate); }},
+    {"experiment", "Train and evaluate everything that an experiment file names, and go on with it",
+     "corridor experiment scenarios/experiments/reduced.toml --run runs/reduced",
+     [](CLI::App& app, Arguments& a) {
+       app.add_option("FILE", a.experiment.file, "experiment file (TOML)")->required();
+       app.add_option("--run", a.experiment.directory, "directory of the experiment")->required();
+       app.add_option("--jobs", a.experiment.jobs, "cores to use (all)");
+     },
+     [](const Arguments& a) { return experiment(a.experiment, a.program); }},
     {"fingerprint", "Print a hash over everything in the newest checkpoint",
      "corridor fingerprint runs/first",
      [](CLI::App& app, Arguments& a) { declare_run(app, a.run); }, run_fingerprint},

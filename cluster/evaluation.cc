@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <cmath>
 #include <cstring>
 #include <nlohmann/json.hpp>
 #include <thread>
@@ -13,8 +12,8 @@
 #include "cluster/evaluation_result.h"
 #include "cluster/local.h"
 #include "cluster/plan.h"
-#include "cluster/progress.h"
 #include "cluster/results_tables.h"
+#include "cluster/step_progress.h"
 #include "cluster/text.h"
 #include "proto/failure.h"
 #include "proto/planner_pairs.h"
@@ -24,69 +23,6 @@
 
 namespace corridor::cluster {
 namespace {
-
-// The steps that each process has driven, from the "steps/total" lines in its log.
-class Monitor {
- public:
-  Monitor(const std::vector<EvaluationJob>& jobs, const std::vector<ProcessPlan>& plan)
-      : start_s_(monotonic_s()) {
-    for (std::size_t i = 0; i < jobs.size(); ++i) {
-      drives_.push_back({jobs[i], LineTail(plan[i].log), 0});
-    }
-  }
-
-  void tick() {
-    for (Drive& drive : drives_) {
-      for (const std::string& line : drive.log.read()) {
-        if (const auto steps = parse_step_count(line)) drive.steps = *steps;
-      }
-    }
-    const double now_s = monotonic_s();
-    if (display_.due(now_s)) display_.show({headline(now_s), details()}, now_s);
-  }
-
- private:
-  struct Drive {
-    EvaluationJob job;
-    LineTail log;
-    std::int64_t steps;
-  };
-
-  std::string headline(double now_s) const {
-    std::int64_t done = 0, total = 0;
-    for (const Drive& drive : drives_) {
-      done += drive.steps;
-      total += drive.job.steps;
-    }
-    const double share = static_cast<double>(done) / static_cast<double>(total);
-    std::string text =
-        fmt::format("evaluation {} {:5.1f} %  {} of {} steps", progress_bar(share, 20),
-                    100.0 * share, grouped(done), grouped(total));
-    if (done > 0 && now_s > start_s_) {
-      const double rate = static_cast<double>(done) / (now_s - start_s_);
-      text += fmt::format("  {} steps/s  {} left", grouped(std::llround(rate)),
-                          duration_text(static_cast<double>(total - done) / rate));
-    }
-    return text;
-  }
-
-  std::string details() const {
-    std::size_t done = 0;
-    std::string running;
-    for (const Drive& drive : drives_) {
-      done += drive.steps >= drive.job.steps;
-      if (drive.steps == 0 || drive.steps >= drive.job.steps) continue;
-      running += fmt::format(
-          ", {} {}: {:.0f} %", drive.job.planner, drive.job.seed,
-          100.0 * static_cast<double>(drive.steps) / static_cast<double>(drive.job.steps));
-    }
-    return fmt::format("{} of {} planners and seeds done{}", done, drives_.size(), running);
-  }
-
-  double start_s_;
-  std::vector<Drive> drives_;
-  ProgressDisplay display_;
-};
 
 template <typename T>
 void refuse_repeated(std::vector<T> values, const char* what) {
@@ -188,11 +124,14 @@ int evaluate(const EvaluateOptions& options) {
   if (!options.json.empty()) check_can_write(options.json);
 
   std::vector<ProcessPlan> plan;
+  std::vector<StepTask> tasks;
   for (const EvaluationJob& job : jobs) {
     plan.push_back(evaluation_process(job, directory, trained, program_directory(), options.fcd));
+    tasks.push_back({fmt::format("{} {}", job.planner, job.seed), job.steps, 0, plan.back().log,
+                     parse_step_count});
   }
-  Monitor monitor(jobs, plan);
-  const Ending ending = run_queue(plan, parallel, Limits{}, [&] { monitor.tick(); });
+  StepProgress progress("evaluation", std::move(tasks));
+  const Ending ending = run_queue(plan, parallel, Limits{}, [&] { progress.tick(); });
   if (ending.signal != 0) {
     fmt::print("stopped: no table\n");
     return 128 + ending.signal;

@@ -15,6 +15,7 @@
 #include "cluster/children.h"
 #include "proto/failure.h"
 #include "proto/program.h"
+#include "proto/pulse.h"
 
 namespace corridor::cluster {
 namespace {
@@ -116,6 +117,7 @@ Ending run_together(const std::vector<ProcessPlan>& plan, const std::string& mai
   start_all();
   Deaths deaths;
   while (true) {
+    beat();
     supervision.tick();
     if (const std::optional<int> signal = signals.wait(limits.tick)) {
       stop(children, signals, main_process, limits, limits.others);
@@ -171,6 +173,7 @@ Ending run_queue(const std::vector<ProcessPlan>& plan, int jobs, const Limits& l
     while (next < plan.size() && children.size() < static_cast<std::size_t>(jobs)) {
       children.start(plan[next++]);
     }
+    beat();
     tick();
     if (children.size() == 0) return {};
     if (const std::optional<int> signal = signals.wait(limits.tick)) {

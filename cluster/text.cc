@@ -23,4 +23,13 @@ std::string duration_text(double seconds) {
   return fmt::format("{} h {:02d} min", whole / 3600, whole / 60 % 60);
 }
 
+std::string listed(const std::vector<std::string>& texts) {
+  std::string list;
+  for (const std::string& text : texts) {
+    if (!list.empty()) list += ", ";
+    list += text;
+  }
+  return list;
+}
+
 }  // namespace corridor::cluster

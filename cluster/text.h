@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 namespace corridor::cluster {
 
@@ -11,5 +12,8 @@ std::string grouped(std::int64_t number);
 
 // 67 -> "1 min 07 s"; 4000 -> "1 h 06 min". Rounded to whole seconds.
 std::string duration_text(double seconds);
+
+// "a, b, c".
+std::string listed(const std::vector<std::string>& texts);
 
 }  // namespace corridor::cluster

@@ -377,7 +377,36 @@ RunConfig config_from(toml::value document, const std::string& name,
   return config;
 }
 
+nlohmann::json as_json(const toml::value& value) {
+  switch (value.type()) {
+    case toml::value_t::boolean:
+      return value.as_boolean();
+    case toml::value_t::integer:
+      return value.as_integer();
+    case toml::value_t::floating:
+      return value.as_floating();
+    case toml::value_t::string:
+      return value.as_string().str;
+    case toml::value_t::array: {
+      nlohmann::json list = nlohmann::json::array();
+      for (const toml::value& element : value.as_array()) list.push_back(as_json(element));
+      return list;
+    }
+    case toml::value_t::table: {
+      nlohmann::json table = nlohmann::json::object();
+      for (const auto& [key, member] : value.as_table()) table[key] = as_json(member);
+      return table;
+    }
+    default:
+      throw Failure("{}: {}: dates and times mean nothing here", place_of(value), shown(value));
+  }
+}
+
 }  // namespace
+
+nlohmann::json load_toml(const fs::path& file) {
+  return as_json(parse_document(read_file(file), file.string()));
+}
 
 RunConfig load_run_config(const fs::path& file, const std::vector<std::string>& overrides) {
   return config_from(load_document(file, {}), file.string(), overrides);

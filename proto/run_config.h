@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,10 @@ RunConfig load_run_config(const std::filesystem::path& file,
 // The same from text; `name` stands in messages. `base` is refused here.
 RunConfig parse_run_config(const std::string& text, const std::string& name,
                            const std::vector<std::string>& overrides = {});
+
+// Any TOML file as JSON, for files that are no scenarios; dates and times are refused. Throws Failure
+// naming the file when it is missing or no TOML.
+nlohmann::json load_toml(const std::filesystem::path& file);
 
 // The keys whose values differ, in the order of proto/settings.h.
 struct ChangedKey {

@@ -1,0 +1,256 @@
+#include "cluster/experiment.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "cluster/checkpoint.h"
+#include "cluster/evaluation.h"
+#include "cluster/evaluation_result.h"
+#include "cluster/experiment_file.h"
+#include "cluster/local.h"
+#include "cluster/manifest.h"
+#include "cluster/plan.h"
+#include "cluster/results_tables.h"
+#include "cluster/step_progress.h"
+#include "cluster/text.h"
+#include "proto/failure.h"
+#include "proto/planner_pairs.h"
+#include "proto/run_config.h"
+#include "proto/run_directory.h"
+#include "proto/schedule.h"
+
+namespace corridor::cluster {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kCoresPerTraining = 2;
+
+// One training seed of one training.
+struct Run {
+  const TrainingArm* training = nullptr;
+  std::uint64_t seed = 0;
+  bool first = false;  // of the training's seeds
+  fs::path root;
+  RunConfig config;
+
+  std::string name() const { return fmt::format("{}-{}", training->name, seed); }
+};
+
+// One evaluation of one run's networks in one scenario.
+struct Evaluation {
+  const Run* run = nullptr;
+  fs::path scenario;
+  EvaluationJob job;
+};
+
+std::vector<Run> runs_of(const Experiment& experiment, const fs::path& directory) {
+  std::vector<Run> runs;
+  for (const TrainingArm& training : experiment.trainings) {
+    for (const std::uint64_t seed : training.training_seeds) {
+      std::vector<std::string> settings = training.settings;
+      settings.push_back(fmt::format("run.seed={}", seed));
+      Run run{&training,
+              seed,
+              seed == training.training_seeds.front(),
+              {},
+              load_run_config(training.scenario, settings)};
+      run.root = directory / "runs" / run.name();
+      runs.push_back(std::move(run));
+    }
+  }
+  return runs;
+}
+
+std::vector<Evaluation> evaluations_of(const Experiment& experiment, const std::vector<Run>& runs) {
+  std::vector<Evaluation> evaluations;
+  for (const Run& run : runs) {
+    for (const fs::path& scenario : run.training->evaluate_in) {
+      for (const std::string& planner : run.training->planners) {
+        if (!planner_pair(planner).learned() && !run.first) continue;
+        for (const std::uint64_t seed : experiment.evaluation_seeds) {
+          evaluations.push_back({&run, scenario, {planner, seed, experiment.evaluation_steps}});
+        }
+      }
+    }
+  }
+  return evaluations;
+}
+
+// The directory of this experiment, new or of an earlier start.
+void claim(const fs::path& directory, const fs::path& file) {
+  on_disk("create", directory, [&] {
+    fs::create_directories(directory / "runs");
+    fs::create_directories(directory / "log");
+  });
+  const fs::path copy = directory / "experiment.toml";
+  if (!fs::exists(copy)) {
+    write_file(copy, read_file(file));
+  } else if (read_file(copy) != read_file(file)) {
+    throw Failure("{} holds another experiment than {}: choose another directory, or put {} back",
+                  directory.string(), file.string(), copy.string());
+  }
+}
+
+void check_same_settings(const Run& run) {
+  const auto changed = changed_keys(config_at_start(RunDirectory::open(run.root)), run.config);
+  if (changed.empty()) return;
+  throw Failure("{} was trained with {} = {}, where {} now says {}: move it away to train anew",
+                run.root.string(), changed.front().name, changed.front().before,
+                run.training->scenario.string(), changed.front().now);
+}
+
+std::uint64_t rounds_done(const Run& run) {
+  if (!fs::exists(run.root / "manifest.json")) return 0;
+  const auto checkpoint = newest_checkpoint(RunDirectory::open(run.root));
+  return checkpoint ? checkpoint->rounds_done : 0;
+}
+
+ProcessPlan training_process(const Run& run, const fs::path& log) {
+  const std::string program = program_directory() / "corridor";
+  ProcessPlan plan{run.name(), {program, "resume", run.root.string()}, log};
+  if (fs::exists(run.root / "manifest.json")) return plan;
+  // Whoever began it was killed before it was a run.
+  on_disk("remove", run.root, [&] { fs::remove_all(run.root); });
+  plan.argv = {program,           "train",  run.training->scenario.string(), "--run",
+               run.root.string(), "--seed", std::to_string(run.seed)};
+  for (const std::string& setting : run.training->settings) {
+    plan.argv.insert(plan.argv.end(), {"--set", setting});
+  }
+  return plan;
+}
+
+// Both return the signal that stopped them, or 0.
+int train_all(const std::vector<Run>& runs, const fs::path& directory, int cores) {
+  std::vector<ProcessPlan> plan;
+  std::vector<StepTask> tasks;
+  for (const Run& run : runs) {
+    if (fs::exists(run.root / "manifest.json")) check_same_settings(run);
+    const Schedule schedule(run.config);
+    const auto steps = [per_round = schedule.steps_per_round()](std::uint64_t rounds) {
+      return static_cast<std::int64_t>(rounds) * per_round;
+    };
+    const std::uint64_t done = rounds_done(run);
+    tasks.push_back({run.name(), steps(schedule.rounds()), steps(done),
+                     run.root / "metrics" / "learner.jsonl", [steps](std::string_view text) {
+                       const auto line = parse_metrics_line(text);
+                       return line ? std::optional(steps(line->round + 1)) : std::nullopt;
+                     }});
+    if (done < schedule.rounds()) {
+      plan.push_back(training_process(run, directory / "log" / (run.name() + ".log")));
+    }
+  }
+  Limits limits;
+  limits.others = Milliseconds(10'000);  // each of them ends processes of its own
+  StepProgress progress("training", std::move(tasks));
+  return run_queue(plan, std::max(1, cores / kCoresPerTraining), limits, [&] { progress.tick(); })
+      .signal;
+}
+
+bool is_done(const fs::path& file, const EvaluationJob& job) {
+  return fs::exists(file) && parse_evaluation(read_json(file), file.string()).steps == job.steps;
+}
+
+int evaluate_all(const std::vector<Evaluation>& evaluations, const fs::path& directory, int cores) {
+  std::vector<ProcessPlan> plan;
+  std::vector<StepTask> tasks;
+  for (const auto& [run, scenario, job] : evaluations) {
+    const RunDirectory trained = RunDirectory::open(run->root);
+    const RunDirectory place = scenario_directory(trained, scenario);
+    const std::string name =
+        fmt::format("{}-{}-{}-{}", run->name(), scenario.stem().string(), job.planner, job.seed);
+    const fs::path log = directory / "log" / (name + ".log");
+    const bool done = is_done(evaluation_file(job, place), job);
+    tasks.push_back({name, job.steps, done ? job.steps : 0, log, parse_step_count});
+    if (done) continue;
+    ProcessPlan process = evaluation_process(job, place, trained, program_directory(), {});
+    process.name = name;
+    process.log = log;
+    plan.push_back(std::move(process));
+  }
+  StepProgress progress("evaluation", std::move(tasks));
+  return run_queue(plan, cores, Limits{}, [&] { progress.tick(); }).signal;
+}
+
+// All results of one training in one scenario.
+std::vector<SeedResult> results_in(const std::vector<Evaluation>& evaluations,
+                                   const TrainingArm& training, const fs::path& scenario) {
+  std::vector<SeedResult> results;
+  for (const Evaluation& evaluation : evaluations) {
+    if (evaluation.run->training != &training || evaluation.scenario != scenario) continue;
+    const fs::path file = evaluation_file(
+        evaluation.job, scenario_directory(RunDirectory::open(evaluation.run->root), scenario));
+    results.push_back({evaluation.run->seed, parse_evaluation(read_json(file), file.string())});
+  }
+  return results;
+}
+
+Table runs_table(const std::vector<Run>& runs) {
+  Table table{"Training runs", {"run", "scenario", "training seed", "settings", "fingerprint"}, {}};
+  for (const Run& run : runs) {
+    const std::string settings = listed(run.training->settings);
+    const auto checkpoint = newest_checkpoint(RunDirectory::open(run.root));
+    CORRIDOR_CHECK(checkpoint.has_value(), "{}", run.root.string());
+    table.rows.push_back({{run.name()},
+                          {run.training->scenario.filename().string()},
+                          {std::to_string(run.seed)},
+                          {settings.empty() ? "-" : settings},
+                          {fingerprint(*checkpoint)}});
+  }
+  return table;
+}
+
+void write_results(const Experiment& experiment, const std::vector<Run>& runs,
+                   const std::vector<Evaluation>& evaluations, const ExperimentOptions& options) {
+  std::string text =
+      fmt::format("# {}\n\n{} steps for each arm, training seed and evaluation seed.\n",
+                  options.file.filename().string(), grouped(experiment.evaluation_steps));
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  for (const TrainingArm& training : experiment.trainings) {
+    for (const fs::path& scenario : training.evaluate_in) {
+      const std::vector<SeedResult> results = results_in(evaluations, training, scenario);
+      const std::vector<Table> tables = results_tables(arms_of(results));
+      const std::string title =
+          fmt::format("{}, evaluated in {}", training.name, scenario.stem().string());
+      text += fmt::format("\n## {}\n", title);
+      for (const Table& table : tables) text += fmt::format("\n{}", markdown_of(table));
+      fmt::print("\n{}\n{}", title, text_of(tables.front()));
+      for (const SeedResult& result : results) {
+        nlohmann::ordered_json entry = {{"training", training.name},
+                                        {"training_seed", result.training_seed},
+                                        {"scenario", scenario.stem().string()}};
+        entry.update(evaluation_json({result.result}).front());
+        json.push_back(std::move(entry));
+      }
+    }
+  }
+  text +=
+      fmt::format("\n## Runs\n\n{}\n{}", markdown_of(runs_table(runs)), markdown_of(paper_table()));
+  write_file(options.directory / "results.md", text);
+  write_file(options.directory / "results.json", json.dump(1) + "\n");
+}
+
+}  // namespace
+
+int experiment(const ExperimentOptions& options, const std::string& program) {
+  const Experiment experiment = load_experiment(options.file);
+  const int cores = options.jobs.value_or(available_cores());
+  if (cores < 1) throw Failure("--jobs {}: at least 1 is needed", cores);
+  claim(options.directory, options.file);
+  const std::vector<Run> runs = runs_of(experiment, options.directory);
+  const std::vector<Evaluation> evaluations = evaluations_of(experiment, runs);
+
+  int signal = train_all(runs, options.directory, cores);
+  if (signal == 0) signal = evaluate_all(evaluations, options.directory, cores);
+  if (signal != 0) {
+    fmt::print("stopped; go on with the same command: {} experiment {} --run {}\n", program,
+               options.file.string(), options.directory.string());
+    return 128 + signal;
+  }
+  write_results(experiment, runs, evaluations, options);
+  fmt::print("\nall tables in {}\n", (options.directory / "results.md").string());
+  return 0;
+}
+
+}  // namespace corridor::cluster

@@ -1,0 +1,151 @@
+#include "cluster/experiment_file.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <set>
+
+#include "cluster/text.h"
+#include "proto/failure.h"
+#include "proto/json_numbers.h"
+#include "proto/planner_pairs.h"
+#include "proto/run_config.h"
+
+namespace corridor::cluster {
+namespace {
+
+using nlohmann::json;
+
+// One table of the file; every key that is asked for is known.
+class Table {
+ public:
+  Table(const json& table, std::string place) : table_(table), place_(std::move(place)) {}
+
+  template <typename T>
+  T required(const char* key) {
+    std::optional<T> value = optional<T>(key);
+    if (!value) throw Failure("{}: {} is missing", place_, key);
+    return *std::move(value);
+  }
+  template <typename T>
+  std::optional<T> optional(const char* key) {
+    know(key);
+    if (!table_.contains(key)) return std::nullopt;
+    try {
+      T value;
+      read(table_.at(key), value);
+      return value;
+    } catch (const std::exception& error) {
+      throw Failure("{}: {} = {}: {}", place_, key, table_.at(key).dump(), error.what());
+    }
+  }
+  void know(const char* key) { known_.insert(key); }
+  void refuse_unknown() const {
+    for (const auto& [key, value] : table_.items()) {
+      if (known_.contains(key)) continue;
+      throw Failure("{}: unknown key {}: known are {}", place_, key,
+                    listed({known_.begin(), known_.end()}));
+    }
+  }
+  const std::string& place() const { return place_; }
+
+ private:
+  static void read(const json& value, std::string& into) {
+    if (!value.is_string() || value.get<std::string>().empty()) {
+      throw Failure("must be a text in quotes");
+    }
+    into = value.get<std::string>();
+  }
+  static void read(const json& value, std::int64_t& into) {
+    into = whole_number<std::int64_t>(value);
+    if (into < 1) throw Failure("must be at least 1");
+  }
+  static void read(const json& value, std::uint64_t& into) {
+    into = whole_number<std::uint64_t>(value);
+  }
+  template <typename T>
+  static void read(const json& list, std::vector<T>& into) {
+    if (!list.is_array() || list.empty()) throw Failure("must be a list with something in it");
+    for (const json& value : list) {
+      T element;
+      read(value, element);
+      if (std::ranges::find(into, element) != into.end()) throw Failure("names one thing twice");
+      into.push_back(element);
+    }
+  }
+
+  const json& table_;
+  std::string place_;
+  std::set<std::string> known_;
+};
+
+void check_planners(const std::vector<std::string>& planners) {
+  for (const std::string& planner : planners) planner_pair(planner);
+}
+
+TrainingArm parse_training(Table& table, const std::filesystem::path& folder,
+                           const std::vector<std::string>& planners,
+                           const std::vector<std::uint64_t>& training_seeds) {
+  constexpr const char* kNameCharacters =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_";
+  TrainingArm training;
+  training.name = table.required<std::string>("name");
+  if (training.name.find_first_not_of(kNameCharacters) != std::string::npos) {
+    throw Failure("{}: name = \"{}\": must be letters, digits and _", table.place(), training.name);
+  }
+  training.scenario = folder / table.required<std::string>("scenario");
+  training.settings =
+      table.optional<std::vector<std::string>>("settings").value_or(std::vector<std::string>{});
+  for (const auto& file : table.required<std::vector<std::string>>("evaluate_in")) {
+    training.evaluate_in.push_back(folder / file);
+  }
+  training.planners = table.optional<std::vector<std::string>>("planners").value_or(planners);
+  training.training_seeds =
+      table.optional<std::vector<std::uint64_t>>("training_seeds").value_or(training_seeds);
+  table.refuse_unknown();
+
+  check_planners(training.planners);
+  load_run_config(training.scenario, training.settings);
+  std::set<std::string> stems;
+  for (const auto& scenario : training.evaluate_in) {
+    load_run_config(scenario);
+    if (stems.insert(scenario.stem()).second) continue;
+    throw Failure("{}: evaluate_in has two scenarios of the name {}", table.place(),
+                  scenario.stem().string());
+  }
+  return training;
+}
+
+}  // namespace
+
+Experiment load_experiment(const std::filesystem::path& file) {
+  const json document = load_toml(file);
+  Table table(document, file.string());
+  Experiment experiment;
+  const auto planners = table.required<std::vector<std::string>>("planners");
+  const auto training_seeds = table.required<std::vector<std::uint64_t>>("training_seeds");
+  experiment.evaluation_seeds = table.required<std::vector<std::uint64_t>>("evaluation_seeds");
+  experiment.evaluation_steps = table.required<std::int64_t>("evaluation_steps");
+  check_planners(planners);
+
+  const json trainings = document.value("training", json());
+  if (!trainings.is_array() || trainings.empty()) {
+    throw Failure("{}: [[training]] is missing: write one for each network to train",
+                  file.string());
+  }
+  std::set<std::string> names;
+  for (const json& entry : trainings) {
+    Table training(entry, fmt::format("{}: [[training]] {}", file.string(), names.size() + 1));
+    if (!entry.is_object()) throw Failure("{} is no table", training.place());
+    experiment.trainings.push_back(
+        parse_training(training, file.parent_path(), planners, training_seeds));
+    if (names.insert(experiment.trainings.back().name).second) continue;
+    throw Failure("{}: there is another one of the name {}", training.place(),
+                  experiment.trainings.back().name);
+  }
+  table.know("training");
+  table.refuse_unknown();
+  return experiment;
+}
+
+}  // namespace corridor::cluster
