@@ -79,6 +79,16 @@ class Table {
   std::set<std::string> known_;
 };
 
+// What `check` throws, with the place in the file.
+template <typename Check>
+void check_at(const std::string& place, const Check& check) {
+  try {
+    check();
+  } catch (const Failure& failure) {
+    throw Failure("{}: {}", place, failure.what());
+  }
+}
+
 void check_planners(const std::vector<std::string>& planners) {
   for (const std::string& planner : planners) planner_pair(planner);
 }
@@ -104,11 +114,13 @@ TrainingArm parse_training(Table& table, const std::filesystem::path& folder,
       table.optional<std::vector<std::uint64_t>>("training_seeds").value_or(training_seeds);
   table.refuse_unknown();
 
-  check_planners(training.planners);
-  load_run_config(training.scenario, training.settings);
+  check_at(table.place(), [&] {
+    check_planners(training.planners);
+    load_run_config(training.scenario, training.settings);
+    for (const auto& scenario : training.evaluate_in) load_run_config(scenario);
+  });
   std::set<std::string> stems;
   for (const auto& scenario : training.evaluate_in) {
-    load_run_config(scenario);
     if (stems.insert(scenario.stem()).second) continue;
     throw Failure("{}: evaluate_in has two scenarios of the name {}", table.place(),
                   scenario.stem().string());
@@ -126,7 +138,7 @@ Experiment load_experiment(const std::filesystem::path& file) {
   const auto training_seeds = table.required<std::vector<std::uint64_t>>("training_seeds");
   experiment.evaluation_seeds = table.required<std::vector<std::uint64_t>>("evaluation_seeds");
   experiment.evaluation_steps = table.required<std::int64_t>("evaluation_steps");
-  check_planners(planners);
+  check_at(table.place(), [&] { check_planners(planners); });
 
   const json trainings = document.value("training", json());
   if (!trainings.is_array() || trainings.empty()) {

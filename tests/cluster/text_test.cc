@@ -22,5 +22,11 @@ TEST(DurationText, ChoosesTheUnitsByLengthAndRoundsBeforeItDoes) {
   EXPECT_EQ(duration_text(4000), "1 h 06 min");
 }
 
+TEST(Listed, PutsCommasBetween) {
+  EXPECT_EQ(listed({}), "");
+  EXPECT_EQ(listed({"a"}), "a");
+  EXPECT_EQ(listed({"a", "b", "c"}), "a, b, c");
+}
+
 }  // namespace
 }  // namespace corridor::cluster
