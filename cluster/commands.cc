@@ -7,6 +7,7 @@
 #include "cluster/evaluation.h"
 #include "cluster/experiment.h"
 #include "cluster/plan.h"
+#include "cluster/report.h"
 #include "cluster/training.h"
 #include "proto/failure.h"
 #include "proto/planner_pairs.h"
@@ -22,6 +23,7 @@ struct Arguments {
   ResumeOptions resume;
   EvaluateOptions evaluate;
   ExperimentOptions experiment;
+  ReportOptions report;
   std::filesystem::path run;
   std::filesystem::path scenario;
   std::string episode;
@@ -111,6 +113,16 @@ const Command kCommands[] = {
        app.add_option("--jobs", a.experiment.jobs, "cores to use (all)");
      },
      [](const Arguments& a) { return experiment(a.experiment, a.program); }},
+    {"report", "Write a page with training curves, tables and settings, and the figures",
+     "corridor report runs/first\n"
+     "  corridor report runs/seed1 runs/seed2 runs/seed3 --out report",
+     [](CLI::App& app, Arguments& a) {
+       app.add_option("DIR", a.report.runs, "run directories; seeds of one training are one curve")
+           ->required();
+       app.add_option("--out", a.report.out,
+                      "folder to write to; DIR/report of the first unless given");
+     },
+     [](const Arguments& a) { return report(a.report); }},
     {"fingerprint", "Print a hash over everything in the newest checkpoint",
      "corridor fingerprint runs/first",
      [](CLI::App& app, Arguments& a) { declare_run(app, a.run); }, run_fingerprint},

@@ -14,6 +14,7 @@
 #include "cluster/results_tables.h"
 #include "cluster/step_progress.h"
 #include "cluster/text.h"
+#include "cluster/training.h"
 #include "proto/failure.h"
 #include "proto/planner_pairs.h"
 #include "proto/run_config.h"
@@ -94,11 +95,13 @@ void claim(const fs::path& directory, const fs::path& file) {
 }
 
 void check_same_settings(const Run& run) {
-  const auto changed = changed_keys(config_at_start(RunDirectory::open(run.root)), run.config);
-  if (changed.empty()) return;
-  throw Failure("{} was trained with {} = {}, where {} now says {}: move it away to train anew",
-                run.root.string(), changed.front().name, changed.front().before,
-                run.training->scenario.string(), changed.front().now);
+  for (const ChangedKey& key :
+       changed_keys(config_at_start(RunDirectory::open(run.root)), run.config)) {
+    if (!decides_result(key.name)) continue;
+    throw Failure("{} was trained with {} = {}, where {} now says {}: move it away to train anew",
+                  run.root.string(), key.name, key.before, run.training->scenario.string(),
+                  key.now);
+  }
 }
 
 std::uint64_t rounds_done(const Run& run) {

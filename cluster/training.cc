@@ -151,28 +151,12 @@ int supervise(const RunConfig& config, const RunDirectory& directory, std::uint6
   return 0;
 }
 
-// Keys that may change in the middle of a run: the others decide its result.
-bool may_change(std::string_view key) {
-  constexpr std::string_view kTables[] = {"evaluation."};
-  constexpr std::string_view kKeys[] = {"schedule.checkpoint_every_steps",
-                                        "schedule.checkpoints_kept",
-                                        "run.transport",
-                                        "run.host",
-                                        "run.replay_port",
-                                        "run.learner_port",
-                                        "run.peer_timeout_s",
-                                        "run.delay_ms_max"};
-  return std::any_of(std::begin(kTables), std::end(kTables),
-                     [&](std::string_view table) { return key.starts_with(table); }) ||
-         std::find(std::begin(kKeys), std::end(kKeys), key) != std::end(kKeys);
-}
-
 // The settings to go on with, which config.toml then says.
 RunConfig changed_config(const ResumeOptions& options, const RunDirectory& directory) {
   const RunConfig at_start = config_at_start(directory);
   const RunConfig config = load_run_config(directory.config(), options.settings);
   for (const ChangedKey& key : changed_keys(at_start, config)) {
-    if (may_change(key.name)) continue;
+    if (!decides_result(key.name)) continue;
     throw Failure(
         "{} = {}: the run began with {}, and its result depends on it; put that back, or "
         "train anew",
@@ -186,6 +170,21 @@ RunConfig changed_config(const ResumeOptions& options, const RunDirectory& direc
 }
 
 }  // namespace
+
+bool decides_result(std::string_view key) {
+  constexpr std::string_view kTables[] = {"evaluation."};
+  constexpr std::string_view kKeys[] = {"schedule.checkpoint_every_steps",
+                                        "schedule.checkpoints_kept",
+                                        "run.transport",
+                                        "run.host",
+                                        "run.replay_port",
+                                        "run.learner_port",
+                                        "run.peer_timeout_s",
+                                        "run.delay_ms_max"};
+  return std::none_of(std::begin(kTables), std::end(kTables),
+                      [&](std::string_view table) { return key.starts_with(table); }) &&
+         std::find(std::begin(kKeys), std::end(kKeys), key) == std::end(kKeys);
+}
 
 int train(const TrainOptions& options, const std::string& program) {
   std::vector<std::string> overrides;

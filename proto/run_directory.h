@@ -8,6 +8,7 @@
 //   checkpoints/<round>/         proto/checkpoints.h
 //   evaluation/                  <planner>_<seed>.json; episodes/<planner>_<seed>_<episode>.json
 //   scenarios/<name>/            the same, of evaluations in another scenario's world
+//   report/                      what `corridor report` wrote
 #pragma once
 
 #include <cstdint>

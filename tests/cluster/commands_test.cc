@@ -30,7 +30,7 @@ Outcome run(std::vector<const char*> arguments) {
   return outcome;
 }
 
-constexpr const char* kCommands[] = {"train",       "resume",  "evaluate",
+constexpr const char* kCommands[] = {"train",       "resume",  "evaluate", "report",
                                      "fingerprint", "redrive", "check"};
 
 TEST(Commands, EveryOneHasHelpWithExamplesAndAVersion) {
@@ -57,6 +57,7 @@ TEST(Commands, AWrongCommandLineIsOneLineThatNamesWhatIsWrongAndWhereHelpIs) {
       {{"train", "a.toml", "--run", "x", "--fast"}, "--fast"},
       {{"evaluate", "run", "--seeds", "1,b"}, "--seeds"},
       {{"evaluate", "run", "--seeds", "1,-2"}, "--seeds"},
+      {{"report"}, "DIR"},
       {{"redrive", "run"}, "EPISODE"},
   };
   for (const auto& [arguments, named] : wrong) {
@@ -82,6 +83,7 @@ TEST(Commands, ADirectoryThatIsNoRunIsRefusedByEveryCommandThatNeedsOne) {
   for (const char* command : {"resume", "evaluate", "fingerprint"}) {
     EXPECT_THAT(run({command, "/nowhere"}).failure, HasSubstr("/nowhere is no run directory"));
   }
+  EXPECT_THAT(run({"report", "/nowhere"}).failure, HasSubstr("no run directory"));
   EXPECT_THAT(run({"redrive", "/nowhere", "rules_1_1"}).failure, HasSubstr("no run directory"));
 }
 

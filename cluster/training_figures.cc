@@ -1,0 +1,179 @@
+#include "cluster/training_figures.h"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+
+#include "cluster/text.h"
+
+namespace corridor::cluster {
+namespace {
+
+// The moving averages of both phases are over this share of their steps together.
+constexpr int kWindowsPerTraining = 25;
+
+struct Quantity {
+  const char* title;   // of the panel, behind the phase
+  const char* unit;    // of the y axis
+  const char* name;    // of the number in the metrics
+  const char* weight;  // likewise; may be empty
+};
+constexpr Quantity kReward = {"reward", "reward per 1000 steps", "charts/reward_per_1000", ""};
+constexpr Quantity kCollisions = {"collisions", "collisions per 1000 steps",
+                                  "charts/collisions_per_1000", ""};
+constexpr Quantity kEpisode = {"reward of an episode", "reward per episode",
+                               "charts/episodic_return", "charts/episodes"};
+constexpr Quantity kLoss = {"loss", "Huber loss of TD errors", "losses/td_loss", ""};
+constexpr Quantity kQ = {"Q-value", "scaled return", "losses/q_values", ""};
+constexpr Quantity kRisk = {"risk", "discounted collisions", "losses/risk_values", ""};
+constexpr Quantity kGreedyReward = {"reward, greedy", "reward per 1000 steps",
+                                    "eval/reward_per_1000", ""};
+constexpr Quantity kGreedyCollisions = {"collisions, greedy", "collisions per 1000 steps",
+                                        "eval/collisions_per_1000", ""};
+constexpr Quantity kScore = {"score", "reward - cost of collisions", "eval/score", ""};
+
+std::string panel_title(Phase phase, const Quantity& quantity) {
+  return fmt::format("{} {}", phase_name(phase), quantity.title);
+}
+
+using Processes = std::vector<ProcessMetrics> RunRecord::*;
+
+std::int64_t window_steps(const RunGroup& group) {
+  const RunConfig& config = group.runs.front().config;
+  return (config.phase(Phase::kMop).steps + config.phase(Phase::kBp).steps) / kWindowsPerTraining;
+}
+
+Curve mean_curve(const std::vector<Curve>& curves) {
+  Curve mean;
+  for (const BandPoint& point : band_of(curves)) mean.push_back({point.step, point.mean});
+  return mean;
+}
+
+// `averaged`: the trend is the moving average of many values, and these are drawn too.
+PlottedCurve plotted(const RunGroup& group, Processes processes, Phase phase,
+                     const Quantity& quantity, bool averaged) {
+  std::vector<Curve> raw;
+  for (const RunRecord& run : group.runs) {
+    raw.push_back(curve_of(run.*processes, phase, quantity.name, quantity.weight));
+  }
+  PlottedCurve curve;
+  if (!averaged) {
+    curve.trend = band_of(raw);
+    return curve;
+  }
+  std::vector<Curve> averages;
+  for (const Curve& of_run : raw) {
+    averages.push_back(moving_average(of_run, window_steps(group)));
+  }
+  curve.raw = mean_curve(raw);
+  curve.trend = band_of(averages);
+  return curve;
+}
+
+// Panels without any curve are left out.
+std::vector<Panel> panels_of(const std::vector<RunGroup>& groups, Processes processes, Phase phase,
+                             const std::vector<Quantity>& quantities, bool averaged) {
+  std::vector<Panel> panels;
+  for (const Quantity& quantity : quantities) {
+    Panel panel{panel_title(phase, quantity), quantity.unit, {}};
+    for (const RunGroup& group : groups) {
+      panel.curves.push_back(plotted(group, processes, phase, quantity, averaged));
+    }
+    if (std::ranges::any_of(panel.curves, [](const auto& curve) { return !curve.trend.empty(); })) {
+      panels.push_back(std::move(panel));
+    }
+  }
+  return panels;
+}
+
+std::optional<Level> rules_level(const RunGroup& group, Phase phase) {
+  std::vector<EvaluationResult> results;
+  for (const RunRecord& run : group.runs) {
+    const auto own = run.evaluations.find("");
+    if (own == run.evaluations.end()) continue;
+    results.insert(results.end(), own->second.begin(), own->second.end());
+  }
+  return level_of(results, phase == Phase::kMop ? "random+rules" : "rules", phase,
+                  group.runs.front().config.simulation.episode_steps);
+}
+
+void add_levels(std::vector<Panel>& panels, const std::vector<RunGroup>& groups, Phase phase) {
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    const std::optional<Level> level = rules_level(groups[i], phase);
+    if (!level) continue;
+    for (Panel& panel : panels) {
+      if (panel.title == panel_title(phase, kReward))
+        panel.curves[i].level = level->reward_per_1000;
+      if (panel.title == panel_title(phase, kCollisions))
+        panel.curves[i].level = level->collisions_per_1000;
+      if (panel.title == panel_title(phase, kEpisode))
+        panel.curves[i].level = level->reward_per_episode;
+    }
+  }
+}
+
+std::string seeds_text(const std::vector<RunGroup>& groups) {
+  std::string text;
+  for (const RunGroup& group : groups) {
+    const std::size_t seeds = group.runs.size();
+    if (seeds == 1) continue;
+    text +=
+        fmt::format(" {}: mean of {} training seeds, with a band from the lowest to the highest.",
+                    group.label, seeds);
+  }
+  return text;
+}
+
+std::string window_text(const std::vector<RunGroup>& groups) {
+  std::string windows;
+  for (const RunGroup& group : groups) {
+    if (!windows.empty()) windows += ", ";
+    windows += grouped(window_steps(group)) + " steps";
+    if (groups.size() > 1) windows += " (" + group.label + ")";
+  }
+  return fmt::format("Thick: moving average over {}.", windows);
+}
+
+void add_figures(std::vector<Figure>& figures, const std::vector<RunGroup>& groups, Phase phase) {
+  const bool mop = phase == Phase::kMop;
+  const std::string prefix = mop ? "mop_" : "bp_", planner = phase_name(phase);
+  std::vector<std::string> labels;
+  for (const RunGroup& group : groups) labels.push_back(group.label);
+  const auto add = [&](const char* name, std::string caption, const char* trend, bool points,
+                       std::vector<Panel> panels) {
+    if (panels.empty()) return;
+    figures.push_back({prefix + name, std::move(caption) + seeds_text(groups), labels, trend,
+                       "rules", points, std::move(panels)});
+  };
+
+  auto training =
+      panels_of(groups, &RunRecord::actors, phase, {kReward, kCollisions, kEpisode}, true);
+  add_levels(training, groups, phase);
+  add("training",
+      fmt::format("Training of the {}: its reward and the collisions while exploring. {} Dashed: "
+                  "the rules on held-out traffic{}.",
+                  planner, window_text(groups), mop ? ", under the same random BP" : ""),
+      "moving average", false, std::move(training));
+  add("learning",
+      fmt::format("What the learner of the {} says of its batches. {}", planner,
+                  window_text(groups)),
+      "moving average", false,
+      panels_of(groups, &RunRecord::learner, phase, {kLoss, kQ, kRisk}, true));
+  add("selection",
+      fmt::format("Greedy evaluations of the {} during training, on episodes of their own: the "
+                  "networks of the best score are kept.",
+                  planner),
+      "selection", true,
+      panels_of(groups, &RunRecord::learner, phase, {kGreedyReward, kGreedyCollisions, kScore},
+                false));
+}
+
+}  // namespace
+
+std::vector<Figure> training_figures(const std::vector<RunGroup>& groups) {
+  std::vector<Figure> figures;
+  for (const Phase phase : {Phase::kMop, Phase::kBp}) add_figures(figures, groups, phase);
+  return figures;
+}
+
+}  // namespace corridor::cluster

@@ -1,0 +1,63 @@
+// A run directory as after a training, without the training.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "cluster/manifest.h"
+#include "proto/metrics.h"
+#include "proto/run_config.h"
+#include "proto/run_directory.h"
+
+namespace corridor::testing_support {
+
+inline RunConfig fake_run_config(std::uint64_t seed) {
+  RunConfig config;
+  config.run.seed = seed;
+  return config;
+}
+
+// Two actors whose MoP reward rises from `reward` on, and a learner; two evaluations. The
+// scenario's file is scenarios/fake.toml.
+inline RunDirectory make_fake_run(const std::filesystem::path& root, const RunConfig& config,
+                                  double reward = 100.0) {
+  const RunDirectory directory = RunDirectory::create(root);
+  write_file(directory.config(), to_toml(config));
+  write_file(directory.manifest(),
+             cluster::describe_run("secret", config, "scenarios/fake.toml").dump(2));
+  for (const char* name : {"actor-0", "actor-1"}) {
+    MetricsWriter writer(directory.metrics(name));
+    for (std::uint64_t line = 1; line <= 10; ++line) {
+      writer.write("MoP", 8 * line - 1, static_cast<std::int64_t>(4096 * line),
+                   {{"charts/reward_per_1000", reward + static_cast<double>(line)},
+                    {"charts/collisions_per_1000", 2.0},
+                    {"charts/episodic_return", 40.0},
+                    {"charts/episodes", 3.0}});
+    }
+  }
+  MetricsWriter learner(directory.metrics("learner"));
+  learner.write("MoP", 7, 4096, {{"losses/td_loss", 0.25}, {"eval/reward_per_1000", 90.0}});
+  for (const char* planner : {"rules", "random+rules"}) {
+    const nlohmann::json episode = {{"steps", 1000},       {"bp_reward", 500.0},
+                                    {"mop_reward", 800.0}, {"collisions", 1},
+                                    {"lane_changes", 9},   {"hard_brakes", 2},
+                                    {"distance_m", 1e4},   {"lane_steps", {500, 300, 200}}};
+    const nlohmann::json result = {
+        {"planner", planner},
+        {"seed", 1002},
+        {"steps", 1000},
+        {"episodes", 1},
+        {"bp_reward_per_1000", 500.0},
+        {"collisions", 1},
+        {"collisions_by_kind",
+         {{"rear_ended", 1}, {"rear_ending", 0}, {"side_by_other", 0}, {"side_by_ego", 0}}},
+        {"lane_changes", 9},
+        {"mean_speed_kph", 36.0},
+        {"distance_km", 10.0},
+        {"per_episode", {episode}}};
+    write_file(directory.evaluation() / (std::string(planner) + "_1002.json"), result.dump());
+  }
+  return directory;
+}
+
+}  // namespace corridor::testing_support
