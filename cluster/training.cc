@@ -1,6 +1,7 @@
 #include "cluster/training.h"
 
 #include <algorithm>
+#include <chrono>
 #include <csignal>
 #include <nlohmann/json.hpp>
 
@@ -10,7 +11,9 @@
 #include "cluster/plan.h"
 #include "cluster/progress.h"
 #include "cluster/run_lock.h"
+#include "cluster/tensorboard.h"
 #include "cluster/text.h"
+#include "cluster/training_scalars.h"
 #include "proto/checkpoints.h"
 #include "proto/failure.h"
 #include "proto/program.h"
@@ -41,16 +44,26 @@ class NewRun {
   bool kept_ = false;
 };
 
-// Metrics files -> what people see.
+// Seconds since 1970.
+double wall_time_s() {
+  return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+}
+
+// Metrics files -> what people see, here and in TensorBoard.
 class Monitor {
  public:
   Monitor(const RunConfig& config, const RunDirectory& directory, std::uint64_t rounds_done)
       : progress_(config, rounds_done, available_cores(), monotonic_s()),
+        scalars_(config),
         learner_(directory.metrics(kLearner)),
         replay_(directory.metrics(kReplay)) {
     for (int i = 0; i < config.run.actors; ++i) {
       actors_.emplace_back(directory.metrics(actor_name(i)));
     }
+    write_events([&] {
+      events_.emplace(directory.tensorboard(), wall_time_s());
+      go_on_from(rounds_done);
+    });
   }
 
   void announce(const std::string& line) { display_.announce(line); }
@@ -58,22 +71,64 @@ class Monitor {
 
   void tick() {
     const double now_s = monotonic_s();
-    for (const std::string& text : learner_.read()) {
-      if (const auto line = parse_metrics_line(text)) progress_.on_learner(*line, now_s);
+    for_lines(learner_, [&](const MetricsLine& line) {
+      progress_.on_learner(line, now_s);
+      scalars_.on_learner(line);
+    });
+    for_lines(replay_, [&](const MetricsLine& line) {
+      progress_.on_replay(line);
+      scalars_.on_replay(line);
+    });
+    for (std::size_t i = 0; i < actors_.size(); ++i) {
+      for_lines(actors_[i], [&](const MetricsLine& line) {
+        progress_.on_actor(line);
+        scalars_.on_actor(static_cast<int>(i), line);
+      });
     }
-    for (const std::string& text : replay_.read()) {
-      if (const auto line = parse_metrics_line(text)) progress_.on_replay(*line);
-    }
-    for (LineTail& actor : actors_) {
-      for (const std::string& text : actor.read()) {
-        if (const auto line = parse_metrics_line(text)) progress_.on_actor(*line);
-      }
-    }
+    const std::vector<StepScalars> ready = scalars_.take();
+    write_events([&] {
+      for (const StepScalars& at : ready) events_->write(at.step, at.values, wall_time_s());
+    });
     if (display_.due(now_s)) display_.show(progress_.lines(), now_s);
   }
 
+  // All processes have ended, and others go on from there.
+  void restarted(std::uint64_t rounds_done) {
+    tick();
+    write_events([&] { go_on_from(rounds_done); });
+  }
+
  private:
+  template <typename Action>
+  static void for_lines(LineTail& tail, const Action& action) {
+    for (const std::string& text : tail.read()) {
+      if (const auto line = parse_metrics_line(text)) action(*line);
+    }
+  }
+
+  void go_on_from(std::uint64_t rounds_done) {
+    const std::int64_t steps = scalars_.steps_before(rounds_done);
+    scalars_.go_back_to(steps);
+    events_->start(steps + 1, wall_time_s());
+  }
+
+  // No training ends because its events cannot be written.
+  template <typename Action>
+  void write_events(const Action& action) {
+    if (events_given_up_) return;
+    try {
+      action();
+    } catch (const Failure& failure) {
+      events_given_up_ = true;
+      announce(
+          fmt::format("{}; the training goes on without events for TensorBoard", failure.what()));
+    }
+  }
+
   TrainingProgress progress_;
+  TrainingScalars scalars_;
+  std::optional<EventWriter> events_;
+  bool events_given_up_ = false;
   LineTail learner_;
   LineTail replay_;
   std::vector<LineTail> actors_;
@@ -94,6 +149,7 @@ void print_what_comes_next(const RunDirectory& directory, const std::string& pro
   fmt::print(
       "  checkpoint    {0}/checkpoints\n"
       "  metrics       {0}/metrics\n"
+      "  TensorBoard   {0}/tensorboard\n"
       "  logs          {0}/log\n"
       "Next:\n"
       "  {1} evaluate {0}\n"
@@ -130,6 +186,7 @@ int supervise(const RunConfig& config, const RunDirectory& directory, std::uint6
     }
     for (const std::string& line : clean_up(directory)) monitor.announce(line);
     const std::uint64_t rounds = rounds_done(directory);
+    monitor.restarted(rounds);
     monitor.announce(fmt::format("{}; all go on from {}", ended.cause(),
                                  rounds > 0 ? "the checkpoint of " + position(schedule, rounds)
                                             : std::string("the beginning")));

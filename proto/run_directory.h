@@ -8,6 +8,7 @@
 //   checkpoints/<round>/         proto/checkpoints.h
 //   evaluation/                  <planner>_<seed>.json; episodes/<planner>_<seed>_<episode>.json
 //   scenarios/<name>/            the same, of evaluations in another scenario's world
+//   tensorboard/                 event files (cluster/tensorboard.h)
 //   report/                      what `corridor report` wrote
 #pragma once
 
@@ -63,6 +64,7 @@ class RunDirectory {
   std::filesystem::path log(std::string_view process) const;
   std::filesystem::path metrics(std::string_view process) const;
   std::filesystem::path checkpoints() const { return root_ / "checkpoints"; }
+  std::filesystem::path tensorboard() const { return root_ / "tensorboard"; }
   std::filesystem::path evaluation() const { return root_ / "evaluation"; }
   std::filesystem::path episodes() const { return root_ / "evaluation" / "episodes"; }
 

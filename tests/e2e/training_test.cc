@@ -47,6 +47,13 @@ TEST(Training, TrainsBothPlannersEvaluatesThemAndDrivesTheirEpisodesAgain) {
   EXPECT_NE(redriven.output.find("as recorded"), std::string::npos) << redriven.output;
   EXPECT_TRUE(std::filesystem::exists(fcd / "rules_6_0.fcd.xml"));
 
+  EXPECT_GT(std::filesystem::file_size(run / "tensorboard" / "events.out.tfevents.000001"), 1000u);
+  const CommandResult reported = run_command({kCorridor, "report", run}, kDeadline_s);
+  EXPECT_EQ(reported.status, 0) << reported.output;
+  for (const char* file : {"report.html", "mop_training.svg", "bp_training.png"}) {
+    EXPECT_TRUE(std::filesystem::exists(run / "report" / file)) << file;
+  }
+
   // Nothing is left to do.
   const CommandResult again = run_command({kCorridor, "resume", run}, kDeadline_s);
   EXPECT_EQ(again.status, 0) << again.output;
@@ -100,8 +107,14 @@ TEST(Training, InterruptedAndResumedItEndsWithTheSameBits) {
     expect_nothing_left(parts);
   }
   ASSERT_EQ(interruptions, 2);
+  // Events that cannot be written are said once, and hinder nothing.
+  std::filesystem::rename(parts / "tensorboard", parts / "earlier");
+  std::ofstream(parts / "tensorboard") << "in the way";
   const CommandResult resumed = run_command({kCorridor, "resume", parts}, kDeadline_s);
   ASSERT_EQ(resumed.status, 0) << resumed.output;
+  const std::size_t warning = resumed.output.find("goes on without events");
+  EXPECT_NE(warning, std::string::npos) << resumed.output;
+  EXPECT_EQ(warning, resumed.output.rfind("goes on without events")) << resumed.output;
   EXPECT_EQ(fingerprint(parts), fingerprint(whole));
 }
 

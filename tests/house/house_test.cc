@@ -30,7 +30,8 @@ std::vector<std::string> sources() {
   for (const char* folder : {"proto", "scenarios", "actor", "replay", "learner", "cluster"}) {
     for (const auto& entry : fs::recursive_directory_iterator(kRoot / folder)) {
       const auto extension = entry.path().extension();
-      if (extension == ".h" || extension == ".cc" || extension == ".capnp") {
+      if (extension == ".h" || extension == ".cc" || extension == ".capnp" ||
+          extension == ".proto") {
         result.push_back(fs::relative(entry.path(), kRoot).string());
       }
     }
@@ -94,6 +95,7 @@ TEST(House, EachForeignLibraryIsUsedByItsAdapterOnly) {
       {{"capnp/", "kj/", "proto/wire.capnp.h"}, {"proto/codec.cc"}},
       {{"torch/", "ATen/", "c10/"}, {"learner/q_network.", "learner/torch_networks.", "learner/blas."}},
       {{"toml"}, {"proto/run_config.cc"}},
+      {{"google/protobuf", "cluster/tensorboard_event.pb.h", "boost/"}, {"cluster/tensorboard.cc"}},
       {{"Eigen/"}, {"actor/policy/", "actor/driving/"}},
   };
   for (const std::string& file : sources()) {
