@@ -92,11 +92,17 @@ RunRecord read_run(const std::filesystem::path& root) {
 
   if (auto own = read_evaluations(directory.evaluation()); !own.empty()) {
     run.evaluations[""] = std::move(own);
+    run.worlds_of_training.insert("");
   }
   std::error_code missing;
   for (const auto& world : std::filesystem::directory_iterator(root / "scenarios", missing)) {
     auto results = read_evaluations(world.path() / "evaluation");
-    if (!results.empty()) run.evaluations[world.path().filename()] = std::move(results);
+    if (results.empty()) continue;
+    const std::string name = world.path().filename();
+    run.evaluations[name] = std::move(results);
+    if (differ_in_seed_only(run.config, load_run_config(world.path() / "config.toml"))) {
+      run.worlds_of_training.insert(name);
+    }
   }
   return run;
 }

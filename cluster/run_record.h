@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -27,6 +28,8 @@ struct RunRecord {
   std::vector<ProcessMetrics> learner;  // one file
   // By the world that was driven in: its own has the name "", others that of their scenario.
   std::map<std::string, std::vector<EvaluationResult>> evaluations;
+  // Those of these worlds that are as in training: "", and scenarios with the same settings.
+  std::set<std::string> worlds_of_training;
 };
 
 // Throws Failure when there is no run, nothing was trained yet, or a file is damaged.

@@ -89,9 +89,10 @@ std::vector<Panel> panels_of(const std::vector<RunGroup>& groups, Processes proc
 std::optional<Level> rules_level(const RunGroup& group, Phase phase) {
   std::vector<EvaluationResult> results;
   for (const RunRecord& run : group.runs) {
-    const auto own = run.evaluations.find("");
-    if (own == run.evaluations.end()) continue;
-    results.insert(results.end(), own->second.begin(), own->second.end());
+    for (const std::string& world : run.worlds_of_training) {
+      const auto& in_world = run.evaluations.at(world);
+      results.insert(results.end(), in_world.begin(), in_world.end());
+    }
   }
   return level_of(results, phase == Phase::kMop ? "random+rules" : "rules", phase,
                   group.runs.front().config.simulation.episode_steps);

@@ -39,6 +39,13 @@ TEST_F(Records, HoldWhatTheDirectoryHolds) {
   std::filesystem::create_directories(dense);
   std::filesystem::copy(directory.evaluation(), dense / "evaluation");
   std::filesystem::remove(dense / "evaluation" / "random+rules_1002.json");
+  RunConfig dense_config = fake_run_config(7);
+  dense_config.traffic.vehicles_max = 20;
+  write_file(dense / "config.toml", to_toml(dense_config));
+  const auto same = root("run") / "scenarios" / "same";
+  std::filesystem::create_directories(same);
+  std::filesystem::copy(directory.evaluation(), same / "evaluation");
+  std::filesystem::copy(directory.config(), same / "config.toml");
   const RunRecord run = read_run(root("run"));
   EXPECT_EQ(run.config.run.seed, 7u);
   EXPECT_EQ(run.scenario, "fake");
@@ -49,7 +56,8 @@ TEST_F(Records, HoldWhatTheDirectoryHolds) {
   ASSERT_THAT(run.actors, SizeIs(2));
   EXPECT_THAT(run.actors[1], SizeIs(10));
   EXPECT_THAT(run.learner, testing::ElementsAre(SizeIs(1)));
-  EXPECT_THAT(run.evaluations, SizeIs(2));
+  EXPECT_THAT(run.evaluations, SizeIs(3));
+  EXPECT_THAT(run.worlds_of_training, testing::ElementsAre("", "same"));
   EXPECT_THAT(run.evaluations.at(""), SizeIs(2));
   EXPECT_THAT(run.evaluations.at("dense"), SizeIs(1));
 }

@@ -66,7 +66,10 @@ TEST(TrainingFigures, HaveTheLevelOfTheRulesThatFitsThePhase) {
   random.planner = "random+rules";
   random.per_episode[0].mop_reward = 700.0;
   run.evaluations[""] = {rules, random};
-  run.evaluations["dense"] = {};
+  run.evaluations["dense"] = {rules};
+  run.evaluations["dense"][0].seed = 7;
+  run.evaluations["dense"][0].per_episode[0].bp_reward = 100.0;
+  run.worlds_of_training = {""};
   const auto figures = training_figures({{"with", {run}}, {"without", {record(1, 20.0)}}});
   ASSERT_THAT(names(figures), ElementsAre("mop_training", "bp_training"));
   EXPECT_EQ(figures[0].panels.at(0).curves.at(0).level, 700.0);
