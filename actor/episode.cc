@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "actor/driving/bypass.h"
 #include "actor/driving/reward.h"
 #include "actor/driving/trajectory.h"
 #include "proto/failure.h"
@@ -50,8 +51,11 @@ StepOutcome Episode::step(Command command, int mop_action) {
 
 StepOutcome Episode::step_by_world() { return advance(world_.step_by_world()); }
 
+void Episode::take_over() { situation_.scene = world_.take_over(); }
+
 StepOutcome Episode::advance(const world::StepResult& result) {
-  const driving::Ego before = situation_.scene.ego;
+  const driving::Scene scene_before = situation_.scene;
+  const driving::Ego& before = scene_before.ego;
   const int lane_before = lanes_.lane_at(before.d_m);
   see(result.scene);
   ++situation_.step;
@@ -67,6 +71,7 @@ StepOutcome Episode::advance(const world::StepResult& result) {
   summary_.collision = result.collision;
   summary_.lane_changes += outcome.lane_changed;
   summary_.hard_brakes += after.acceleration_mps2 < -kHardBrake_mps2;
+  summary_.bypasses += driving::bypasses(scene_before, situation_.scene, settings_);
   summary_.distance_m += after.s_m - before.s_m;
   ++summary_.lane_steps[static_cast<std::size_t>(lane)];
   outcome.episode_ended = result.collision.has_value() || situation_.step >= step_limit_;

@@ -16,8 +16,8 @@ namespace corridor::actor {
 
 // What happened in one step.
 struct StepOutcome {
-  double bp_reward = 0.0;       // as in the paper: no shaping
-  double mop_reward = 0.0;      // 0 where the world drives
+  double bp_reward = 0.0;   // as in the paper: no shaping
+  double mop_reward = 0.0;  // 0 where the world drives
   bool lane_changed = false;
   bool entered_closed = false;  // the ego went into a corridor that was closed: over for learning
   bool episode_ended = false;   // by a collision or the step limit
@@ -31,6 +31,7 @@ struct EpisodeSummary {
   std::optional<driving::Collision> collision;
   int lane_changes = 0;
   int hard_brakes = 0;  // steps with a deceleration above kHardBrake_mps2
+  int bypasses = 0;     // vehicles and objects passed within the lane (driving/bypass.h)
   double distance_m = 0.0;
   std::vector<std::int64_t> lane_steps;  // steps that ended in each lane
 };
@@ -53,9 +54,11 @@ class Episode {
 
   StepOutcome step(driving::Command command, int mop_action);
   StepOutcome step_by_world();
+  // Planners drive on from where the world has driven.
+  void take_over();
 
   const EpisodeSummary& summary() const { return summary_; }
-  // The actions of each step so far (driving/action.h: pack); empty where the world drives.
+  // The actions of each step so far (driving/action.h: pack); none for those that the world drove.
   const std::vector<std::uint8_t>& actions() const { return actions_; }
   // Over every vehicle's position and speed at every step so far: equal for equal episodes.
   std::uint64_t trajectory_hash() const { return hash_.value(); }

@@ -2,8 +2,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "actor/recorded_episode.h"
 #include "proto/failure.h"
-#include "proto/json_numbers.h"
 
 namespace corridor::actor {
 namespace {
@@ -25,12 +25,13 @@ json summary_json(const EpisodeSummary& summary, std::uint64_t episode) {
                                  : json(nullptr)},
           {"lane_changes", summary.lane_changes},
           {"hard_brakes", summary.hard_brakes},
+          {"bypasses", summary.bypasses},
           {"distance_m", summary.distance_m},
           {"lane_steps", summary.lane_steps}};
 }
 
 json totals_json(const RunConfig& config, const EvaluationTask& task, const json& per_episode) {
-  std::int64_t steps = 0, collisions = 0, lane_changes = 0;
+  std::int64_t steps = 0, collisions = 0, lane_changes = 0, bypasses = 0;
   double bp_reward = 0.0, distance_m = 0.0;
   json by_kind = json::object();
   for (int kind = 0; kind < driving::kCollisionKinds; ++kind) {
@@ -40,6 +41,7 @@ json totals_json(const RunConfig& config, const EvaluationTask& task, const json
     steps += episode["steps"].get<std::int64_t>();
     collisions += episode["collisions"].get<std::int64_t>();
     lane_changes += episode["lane_changes"].get<std::int64_t>();
+    bypasses += episode["bypasses"].get<std::int64_t>();
     bp_reward += episode["bp_reward"].get<double>();
     distance_m += episode["distance_m"].get<double>();
     const json& kind = episode["collision_kind"];
@@ -57,6 +59,7 @@ json totals_json(const RunConfig& config, const EvaluationTask& task, const json
           {"collisions", collisions},
           {"collisions_by_kind", by_kind},
           {"lane_changes", lane_changes},
+          {"bypasses", bypasses},
           {"mean_speed_kph", kKphPerMps * distance_m / time_s},
           {"distance_km", distance_m / 1000.0},
           {"per_episode", per_episode}};
@@ -76,7 +79,7 @@ json episode_json(const EvaluationTask& task, std::uint64_t index, std::uint64_t
 
 }  // namespace
 
-void evaluate(const RunConfig& config, const TrainedNetworks& networks, const EvaluationTask& task,
+void evaluate(const RunConfig& config, const Networks& networks, const EvaluationTask& task,
               const RunDirectory& directory, world::World& world,
               const std::function<bool(std::int64_t)>& progress) {
   const auto bp = make_behaviour_planner(task.pair, config, networks);
@@ -112,48 +115,15 @@ void evaluate(const RunConfig& config, const TrainedNetworks& networks, const Ev
 
 Redriven redrive(const RunConfig& config, const std::filesystem::path& file, world::World& world,
                  const std::filesystem::path& fcd_output) {
-  const json record = read_json(file);
-  world::EpisodeStart start;
-  start.fcd_output = fcd_output;
-  std::vector<std::uint8_t> actions;
-  int steps = 0;
-  Redriven result;
-  try {
-    start.seed = whole_number<std::uint64_t>(record.at("episode_seed"));
-    if (record.at("driven_by_world").get<bool>()) start.driver = world::EgoDriver::kWorld;
-    actions = whole_numbers<std::uint8_t>(record.at("actions"));
-    steps = whole_number<int>(record.at("summary").at("steps"));
-    result.recorded_hash =
-        std::stoull(record.at("trajectory_hash").get<std::string>(), nullptr, 16);
-  } catch (const std::exception& error) {
-    throw Failure("{} is no recorded episode: {}", file.string(), error.what());
-  }
-  const bool planned = start.driver == world::EgoDriver::kPlanner;
-  if (planned && actions.size() != static_cast<std::size_t>(steps)) {
-    throw Failure("{} is damaged: {} actions for {} steps", file.string(), actions.size(), steps);
-  }
-  const int mop_actions = config.shape(Phase::kMop).actions;
-  for (const std::uint8_t action : actions) {
-    if (driving::unpack(action).mop_action >= mop_actions) {
-      throw Failure("{} has an action that this run's planner does not have: it is of another run",
-                    file.string());
-    }
-  }
-
+  RecordedEpisode recorded = read_recorded_episode(config, file);
+  recorded.start.fcd_output = fcd_output;
   Episode episode(config, world);
-  episode.begin(start);
-  for (int i = 0; i < steps; ++i) {
-    if (planned) {
-      const auto action = driving::unpack(actions[static_cast<std::size_t>(i)]);
-      if (episode.step(action.command, action.mop_action).episode_ended) break;
-    } else if (episode.step_by_world().episode_ended) {
-      break;
-    }
+  episode.begin(recorded.start);
+  for (int i = 0; i < recorded.steps; ++i) {
+    if (step_as_recorded(episode, recorded).episode_ended) break;
   }
   episode.end();
-  result.hash = episode.trajectory_hash();
-  result.summary = episode.summary();
-  return result;
+  return {recorded.trajectory_hash, episode.trajectory_hash(), episode.summary()};
 }
 
 }  // namespace corridor::actor

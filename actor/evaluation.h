@@ -25,7 +25,7 @@ struct EvaluationTask {
 //   evaluation/episodes/<planner>_<seed>_<episode>.json     what drives it again
 // `progress` hears of the steps done after each episode; when it returns false the evaluation ends
 // without writing its totals. Equal tasks write equal files.
-void evaluate(const RunConfig& config, const TrainedNetworks& networks, const EvaluationTask& task,
+void evaluate(const RunConfig& config, const Networks& networks, const EvaluationTask& task,
               const RunDirectory& directory, world::World& world,
               const std::function<bool(std::int64_t steps)>& progress);
 

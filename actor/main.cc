@@ -1,14 +1,15 @@
-// corridor-actor: one car in one SUMO. In a training run it explores; by itself it evaluates, or
-// drives a recorded episode again.
+// corridor-actor: one car in one SUMO. In a training run it explores; by itself it evaluates,
+// drives a recorded episode again, or looks back on an evaluation's collisions.
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <string>
 
 #include "actor/evaluation.h"
+#include "actor/hindsight_report.h"
 #include "actor/training.h"
 #include "actor/world/sumo_world.h"
-#include "proto/checkpoints.h"
 #include "proto/failure.h"
+#include "proto/networks.h"
 #include "proto/program.h"
 #include "proto/run_config.h"
 #include "proto/run_directory.h"
@@ -27,18 +28,9 @@ struct Arguments {
   std::string networks;
   std::string fcd;
   std::string episode;
+  std::string look_back;
+  actor::HindsightLimits hindsight;
 };
-
-actor::TrainedNetworks trained_networks(const RunDirectory& directory) {
-  const auto checkpoint = Checkpoints(directory.checkpoints()).newest();
-  if (!checkpoint) {
-    throw Failure("{} has no checkpoint yet: train on, or evaluate another run",
-                  directory.root().string());
-  }
-  const std::string file = *checkpoint / "learner.safetensors";
-  const TensorFile tensors = read_checkpoint_file(*checkpoint, "learner.safetensors");
-  return {tensors.get<float>("mop", file), tensors.get<float>("bp", file)};
-}
 
 int evaluate(const Arguments& arguments, const RunConfig& config, const RunDirectory& directory,
              world::World& world) {
@@ -46,7 +38,12 @@ int evaluate(const Arguments& arguments, const RunConfig& config, const RunDirec
                                    arguments.steps, arguments.fcd};
   const RunDirectory trained =
       arguments.networks.empty() ? directory : RunDirectory::open(arguments.networks);
-  actor::evaluate(config, trained_networks(trained), task, directory, world,
+  const auto networks = newest_networks(trained, config);
+  if (!networks && task.pair.learned()) {
+    throw Failure("{} has no checkpoint yet: train on, or evaluate another run",
+                  trained.root().string());
+  }
+  actor::evaluate(config, networks.value_or(Networks{}), task, directory, world,
                   [&](std::int64_t steps) {
                     std::printf("%lld/%lld\n", static_cast<long long>(steps),
                                 static_cast<long long>(task.steps));
@@ -68,6 +65,17 @@ int redrive(const Arguments& arguments, const RunConfig& config, world::World& w
   return result.hash == result.recorded_hash ? 0 : 1;
 }
 
+int look_back(const Arguments& arguments, const RunConfig& config, const RunDirectory& directory,
+              world::World& world) {
+  const actor::HindsightTask task{arguments.look_back, arguments.seed, arguments.hindsight};
+  actor::report_hindsight(config, task, directory, world, [](std::size_t done, std::size_t total) {
+    std::printf("%zu/%zu\n", done, total);
+    std::fflush(stdout);
+    return !stop_requested();
+  });
+  return 0;
+}
+
 int run(const Arguments& arguments) {
   const RunDirectory directory = RunDirectory::open(arguments.run);
   const RunConfig config = load_run_config(directory.config());
@@ -75,6 +83,7 @@ int run(const Arguments& arguments) {
   world::SumoWorld world(world::world_settings(config), directory.network(), directory.routes(),
                          time);
   if (!arguments.episode.empty()) return redrive(arguments, config, world);
+  if (!arguments.look_back.empty()) return look_back(arguments, config, directory, world);
   if (!arguments.planners.empty()) return evaluate(arguments, config, directory, world);
   if (arguments.index < 0 || arguments.index >= config.run.actors) {
     throw Failure("--index {} is none of the run's {} actors", arguments.index, config.run.actors);
@@ -92,13 +101,20 @@ int main(int argc, char** argv) {
   app.add_option("RUN", arguments.run, "run directory")->required();
   app.add_option("--index", arguments.index, "train: as which actor, from 0");
   app.add_option("--evaluate", arguments.planners, "evaluate this planner pair");
-  app.add_option("--seed", arguments.seed, "evaluate: seed of the traffic");
+  app.add_option("--seed", arguments.seed, "evaluate, look back: seed of the traffic");
   app.add_option("--steps", arguments.steps, "evaluate: steps to drive");
   app.add_option("--networks", arguments.networks,
                  "evaluate: run directory whose networks drive, if not RUN");
   app.add_option("--fcd", arguments.fcd,
                  "SUMO writes its trajectories here (evaluate: a directory; redrive: a file)");
   app.add_option("--redrive", arguments.episode, "drive this recorded episode again");
+  app.add_option("--look-back", arguments.look_back,
+                 "search how this planner pair's collisions in an evaluation could be avoided");
+  app.add_option("--actions", arguments.hindsight.actions, "look back: by the last so many actions")
+      ->check(CLI::Range(1, 10));
+  app.add_option("--attempts", arguments.hindsight.attempts_max,
+                 "look back: give up after so many attempts for each number of actions")
+      ->check(CLI::PositiveNumber);
   CLI11_PARSE(app, argc, argv);
   return run_program("corridor-actor", [&] { return run(arguments); });
 }

@@ -27,7 +27,7 @@ int QMotionPlanner::decide(const driving::Situation& situation, const driving::W
 
 std::unique_ptr<driving::BehaviourPlanner> make_behaviour_planner(const PlannerPair& pair,
                                                                   const RunConfig& config,
-                                                                  const TrainedNetworks& networks) {
+                                                                  const Networks& networks) {
   using driving::Command, driving::ConstantBp;
   const DrivingSettings settings = driving_settings(config);
   switch (pair.bp) {
@@ -51,7 +51,7 @@ std::unique_ptr<driving::BehaviourPlanner> make_behaviour_planner(const PlannerP
 
 std::unique_ptr<driving::MotionPlanner> make_motion_planner(const PlannerPair& pair,
                                                             const RunConfig& config,
-                                                            const TrainedNetworks& networks) {
+                                                            const Networks& networks) {
   switch (pair.mop) {
     case MopKind::kLearned:
       return std::make_unique<QMotionPlanner>(config, networks.mop);

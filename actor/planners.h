@@ -8,6 +8,7 @@
 
 #include "actor/driving/planner.h"
 #include "actor/policy/action_values.h"
+#include "proto/networks.h"
 #include "proto/planner_pairs.h"
 #include "proto/settings.h"
 
@@ -37,18 +38,12 @@ class QMotionPlanner : public driving::MotionPlanner {
   std::vector<float> observation_;
 };
 
-// The trained planners' parameters (RunConfig::parameters).
-struct TrainedNetworks {
-  std::vector<float> mop;
-  std::vector<float> bp;
-};
-
 // Null where the pair has no planner.
 std::unique_ptr<driving::BehaviourPlanner> make_behaviour_planner(const PlannerPair& pair,
                                                                   const RunConfig& config,
-                                                                  const TrainedNetworks& networks);
+                                                                  const Networks& networks);
 std::unique_ptr<driving::MotionPlanner> make_motion_planner(const PlannerPair& pair,
                                                             const RunConfig& config,
-                                                            const TrainedNetworks& networks);
+                                                            const Networks& networks);
 
 }  // namespace corridor::actor

@@ -15,6 +15,7 @@ PhaseRollout::PhaseRollout(const RunConfig& config, int actor, world::World& wor
       driving_(driving_settings(config)),
       schedule_(config),
       phase_(schedule_.phase_of(next_round)),
+      random_commands_(phase_ == Phase::kMop && config.schedule.mop_commands == "random"),
       actor_(actor),
       next_round_(next_round),
       episode_(config, world),
@@ -24,7 +25,8 @@ PhaseRollout::PhaseRollout(const RunConfig& config, int actor, world::World& wor
       transitions_({config.shape(phase_).observations}, config.phase(phase_)),
       episode_index_(open.episode),
       observation_(static_cast<std::size_t>(config.shape(phase_).observations)),
-      mop_observation_(static_cast<std::size_t>(config.shape(Phase::kMop).observations)),
+      other_observation_(static_cast<std::size_t>(
+          config.shape(phase_ == Phase::kMop ? Phase::kBp : Phase::kMop).observations)),
       time_(time) {
   const auto rounds_before = static_cast<std::int64_t>(next_round - schedule_.first_round(phase_));
   const auto recorded = static_cast<std::int64_t>(open.actions.size());
@@ -48,8 +50,7 @@ PhaseRollout::PhaseRollout(const RunConfig& config, int actor, world::World& wor
 }
 
 Insert PhaseRollout::drive_round(const Weights& weights) {
-  mop_.emplace(config_.phase(Phase::kMop), config_.shape(Phase::kMop), weights.mop);
-  bp_.emplace(config_.phase(Phase::kBp), config_.shape(Phase::kBp), weights.bp);
+  use(weights);
   const int steps = config_.schedule.steps_per_round;
   const auto rounds_before = static_cast<std::int64_t>(next_round_ - schedule_.first_round(phase_));
   for (int i = 0; i < steps; ++i) step(rounds_before * steps + i, std::nullopt);
@@ -66,12 +67,18 @@ Insert PhaseRollout::drive_round(const Weights& weights) {
   return chunk;
 }
 
+void PhaseRollout::use(const Weights& weights) {
+  mop_.emplace(config_.phase(Phase::kMop), config_.shape(Phase::kMop), weights.mop);
+  bp_.emplace(config_.phase(Phase::kBp), config_.shape(Phase::kBp), weights.bp);
+}
+
 SelectionOutcome PhaseRollout::select(const Weights& weights) {
+  use(weights);
   if (episode_open_) cut_off_episode();
   QMotionPlanner mop(config_, weights.mop);
   QBehaviourPlanner learned_bp(config_, weights.bp);
   driving::BehaviourPlanner& bp =
-      phase_ == Phase::kMop ? static_cast<driving::BehaviourPlanner&>(random_bp_) : learned_bp;
+      random_commands_ ? static_cast<driving::BehaviourPlanner&>(random_bp_) : learned_bp;
   SelectionOutcome outcome;
   outcome.round = next_round_;
   for (int i = actor_; i < config_.schedule.selection_episodes; i += config_.run.actors) {
@@ -132,22 +139,34 @@ void PhaseRollout::step(std::int64_t own_step, std::optional<std::uint8_t> recor
   }
 }
 
+Command PhaseRollout::command(const std::optional<std::uint8_t>& recorded) {
+  const driving::Situation& situation = episode_.situation();
+  if (!random_commands_) {
+    if (recorded) return driving::unpack(*recorded).command;
+    // Without weights yet: a recorded episode that has ended, which the constructor refuses.
+    if (!bp_) return Command::kKeep;
+    driving::observe_bp(situation.scene, situation.previous, driving_, other_observation_);
+    return static_cast<Command>(greedy(*bp_, other_observation_));
+  }
+  // Asked in either case: what the random BP does next depends on its having been asked.
+  const Command asked = random_bp_.decide(situation);
+  if (recorded && asked != driving::unpack(*recorded).command) {
+    throw Failure(
+        "the open episode of actor {} cannot be driven again: its step {} was driven under another "
+        "command; the checkpoint is of another configuration",
+        actor_, situation.step);
+  }
+  return asked;
+}
+
 driving::StepAction PhaseRollout::decide(std::optional<int> random_action,
                                          const std::optional<std::uint8_t>& recorded) {
   const driving::Situation& situation = episode_.situation();
   driving::StepAction action;
   if (recorded) action = driving::unpack(*recorded);
   if (phase_ == Phase::kMop) {
-    // Asked in either case: what the random BP does next depends on its having been asked.
-    const Command command = random_bp_.decide(situation);
-    if (recorded && command != action.command) {
-      throw Failure(
-          "the open episode of actor {} cannot be driven again: its step {} was driven "
-          "under another command; the checkpoint is of another configuration",
-          actor_, situation.step);
-    }
-    action.command = command;
-    observe(command);
+    action.command = command(recorded);
+    observe(action.command);
     if (!recorded) {
       action.mop_action = random_action ? *random_action : greedy(*mop_, observation_);
     }
@@ -158,8 +177,8 @@ driving::StepAction PhaseRollout::decide(std::optional<int> random_action,
   action.command =
       static_cast<Command>(random_action ? *random_action : greedy(*bp_, observation_));
   driving::observe_mop(situation.scene, situation.gaps, episode_.window(action.command), driving_,
-                       mop_observation_);
-  action.mop_action = greedy(*mop_, mop_observation_);
+                       other_observation_);
+  action.mop_action = greedy(*mop_, other_observation_);
   return action;
 }
 
@@ -181,7 +200,7 @@ void PhaseRollout::observe(Command command) {
 }
 
 void PhaseRollout::cut_off_episode() {
-  observe(phase_ == Phase::kMop ? random_bp_.decide(episode_.situation()) : Command::kKeep);
+  observe(phase_ == Phase::kMop ? command(std::nullopt) : Command::kKeep);
   transitions_.cut_off(observation_);
   leave_episode();
 }

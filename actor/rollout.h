@@ -53,11 +53,14 @@ class PhaseRollout {
   // One step of training; with what was recorded for it instead of a greedy choice when it is
   // driven again. `own_step` counts this actor's steps in the phase.
   void step(std::int64_t own_step, std::optional<std::uint8_t> recorded);
+  // What the BP asks for while the MoP is trained.
+  driving::Command command(const std::optional<std::uint8_t>& recorded);
   driving::StepAction decide(std::optional<int> random_action,
                              const std::optional<std::uint8_t>& recorded);
   int greedy(policy::ActionValues& planner, const std::vector<float>& observation);
   // What the planner in training sees now, given the command where that is the MoP.
   void observe(driving::Command command);
+  void use(const Weights& weights);
   void cut_off_episode();
   void leave_episode();
 
@@ -65,6 +68,7 @@ class PhaseRollout {
   DrivingSettings driving_;
   Schedule schedule_;
   Phase phase_;
+  bool random_commands_;  // in the MoP phase
   int actor_;
   std::uint64_t next_round_;
 
@@ -78,7 +82,7 @@ class PhaseRollout {
   std::optional<policy::ActionValues> mop_;
   std::optional<policy::ActionValues> bp_;
   std::vector<float> observation_;      // of the planner in training
-  std::vector<float> mop_observation_;  // of the frozen MoP, in the BP phase
+  std::vector<float> other_observation_;  // of the planner that is not
   RolloutTotals totals_;
   TimeAccount& time_;
 };

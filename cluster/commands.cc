@@ -6,6 +6,8 @@
 #include "cluster/checkpoint.h"
 #include "cluster/evaluation.h"
 #include "cluster/experiment.h"
+#include "cluster/export.h"
+#include "cluster/hindsight.h"
 #include "cluster/plan.h"
 #include "cluster/report.h"
 #include "cluster/training.h"
@@ -22,11 +24,13 @@ struct Arguments {
   TrainOptions train;
   ResumeOptions resume;
   EvaluateOptions evaluate;
+  HindsightOptions hindsight;
   ExperimentOptions experiment;
   ReportOptions report;
   std::filesystem::path run;
   std::filesystem::path scenario;
   std::string episode;
+  std::filesystem::path exported;
 };
 
 void declare_settings(CLI::App& app, std::vector<std::string>& settings) {
@@ -38,6 +42,7 @@ void declare_train(CLI::App& app, Arguments& arguments) {
   TrainOptions& options = arguments.train;
   app.add_option("SCENARIO", options.scenario, "scenario file (TOML)")->required();
   app.add_option("--run", options.run, "run directory to create")->required();
+  app.add_option("--from", options.from, "begin with the networks of this run, not random ones");
   app.add_option("--actors", options.actors, "actor processes (run.actors)")->take_last();
   app.add_option("--seed", options.seed, "seed of everything random (run.seed)")
       ->take_last()
@@ -68,6 +73,26 @@ void declare_evaluate(CLI::App& app, Arguments& arguments) {
   app.add_option("--json", options.json, "write the figures of each planner and seed to this file");
   app.add_option("--fcd", options.fcd,
                  "have SUMO write the trajectories of every episode into this directory");
+}
+
+void declare_hindsight(CLI::App& app, Arguments& arguments) {
+  HindsightOptions& options = arguments.hindsight;
+  app.add_option("DIR", options.run, "run directory, or one of its scenarios/<name>")->required();
+  app.add_option("--planners", options.planners,
+                 "planner pairs, separated by commas; those of `corridor evaluate` unless given")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  app.add_option("--seeds", options.seeds, "evaluation seeds (evaluation.seeds)")
+      ->delimiter(',')
+      ->check(CLI::NonNegativeNumber)
+      ->allow_extra_args(false);
+  app.add_option("--actions", options.actions, "search the last so many actions")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 10));
+  app.add_option("--attempts", options.attempts, "give up a search after so many attempts")
+      ->capture_default_str()
+      ->check(CLI::PositiveNumber);
+  app.add_option("--jobs", options.jobs, "processes at a time (the number of cores)");
 }
 
 int run_fingerprint(const Arguments& arguments) {
@@ -123,6 +148,20 @@ const Command kCommands[] = {
                       "folder to write to; DIR/report of the first unless given");
      },
      [](const Arguments& a) { return report(a.report); }},
+    {"export", "Copy a trained run's networks and settings, without all else",
+     "corridor export runs/paper scenarios/trained/paper",
+     [](CLI::App& app, Arguments& a) {
+       declare_run(app, a.run);
+       app.add_option("TO", a.exported, "run directory to create")->required();
+     },
+     [](const Arguments& a) {
+       export_run(a.run, a.exported);
+       return 0;
+     }},
+    {"hindsight", "Say how many collisions of an evaluation could have been avoided",
+     "corridor hindsight runs/first\n"
+     "  corridor hindsight runs/first/scenarios/dense --planners hierarchical,sumo --seeds 1002",
+     declare_hindsight, [](const Arguments& a) { return hindsight(a.hindsight); }},
     {"fingerprint", "Print a hash over everything in the newest checkpoint",
      "corridor fingerprint runs/first",
      [](CLI::App& app, Arguments& a) { declare_run(app, a.run); }, run_fingerprint},

@@ -31,22 +31,6 @@ void refuse_repeated(std::vector<T> values, const char* what) {
   if (repeated != values.end()) throw Failure("{} {} is given twice", what, *repeated);
 }
 
-std::vector<EvaluationJob> jobs_of(const EvaluateOptions& options, const RunConfig& config) {
-  std::vector<std::string> planners = options.planners;
-  if (planners.empty()) {
-    for (const PlannerPair& pair : kPlannerPairs) {
-      if (pair.by_default) planners.emplace_back(pair.name);
-    }
-  }
-  const auto& seeds = options.seeds.empty() ? config.evaluation.seeds : options.seeds;
-  for (const std::string& planner : planners) planner_pair(planner);
-  refuse_repeated(planners, "planner");
-  refuse_repeated(seeds, "evaluation seed");
-  const std::int64_t steps = options.steps.value_or(config.evaluation.steps);
-  if (steps < 1) throw Failure("--steps {}: at least 1 is needed", steps);
-  return evaluation_jobs(planners, seeds, steps);
-}
-
 // Now rather than after the driving.
 void check_can_write(const std::filesystem::path& file) {
   const std::filesystem::path parent = std::filesystem::absolute(file).parent_path();
@@ -56,13 +40,46 @@ void check_can_write(const std::filesystem::path& file) {
   }
 }
 
+// What an exported run lacks.
+void complete(const RunDirectory& directory, const RunConfig& config) {
+  for (const auto& folder : {directory.log("").parent_path(), directory.episodes()}) {
+    on_disk("create", folder, [&] { std::filesystem::create_directories(folder); });
+  }
+  if (!std::filesystem::exists(directory.network())) {
+    scenarios::write_sumo_files(config, directory.network().parent_path());
+  }
+}
+
 }  // namespace
+
+std::vector<EvaluationJob> chosen_jobs(std::vector<std::string> planners,
+                                       std::vector<std::uint64_t> seeds, std::int64_t steps,
+                                       const RunConfig& config) {
+  if (planners.empty()) {
+    for (const PlannerPair& pair : kPlannerPairs) {
+      if (pair.by_default) planners.emplace_back(pair.name);
+    }
+  }
+  if (seeds.empty()) seeds = config.evaluation.seeds;
+  for (const std::string& planner : planners) planner_pair(planner);
+  refuse_repeated(planners, "planner");
+  refuse_repeated(seeds, "evaluation seed");
+  return evaluation_jobs(planners, seeds, steps);
+}
+
+int parallel_jobs(std::optional<int> jobs) {
+  const int parallel =
+      jobs.value_or(std::max(1, static_cast<int>(std::thread::hardware_concurrency())));
+  if (parallel < 1) throw Failure("--jobs {}: at least 1 is needed", parallel);
+  return parallel;
+}
 
 void check_can_drive(const std::string& planner, const RunDirectory& directory,
                      const RunConfig& config) {
   const PlannerPair& pair = planner_pair(planner);
   const bool learned_bp = pair.bp == BpKind::kLearned;
   if (!pair.learned()) return;
+  if (std::filesystem::exists(directory.networks())) return;
   const std::optional<Checkpoint> checkpoint = newest_checkpoint(directory);
   if (!checkpoint) {
     throw Failure(
@@ -116,12 +133,14 @@ int evaluate(const EvaluateOptions& options) {
   const RunDirectory directory =
       options.scenario.empty() ? trained : scenario_directory(trained, options.scenario);
   const RunConfig config = load_run_config(directory.config());
-  const std::vector<EvaluationJob> jobs = jobs_of(options, config);
+  const std::int64_t steps = options.steps.value_or(config.evaluation.steps);
+  if (steps < 1) throw Failure("--steps {}: at least 1 is needed", steps);
+  const std::vector<EvaluationJob> jobs =
+      chosen_jobs(options.planners, options.seeds, steps, config);
   for (const EvaluationJob& job : jobs) check_can_drive(job.planner, trained, config);
-  const int parallel =
-      options.jobs.value_or(std::max(1, static_cast<int>(std::thread::hardware_concurrency())));
-  if (parallel < 1) throw Failure("--jobs {}: at least 1 is needed", parallel);
+  const int parallel = parallel_jobs(options.jobs);
   if (!options.json.empty()) check_can_write(options.json);
+  complete(directory, config);
 
   std::vector<ProcessPlan> plan;
   std::vector<StepTask> tasks;

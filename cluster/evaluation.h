@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "cluster/plan.h"
 #include "proto/run_directory.h"
 #include "proto/settings.h"
 
@@ -34,6 +35,16 @@ RunDirectory scenario_directory(const RunDirectory& run, const std::filesystem::
 // status: 0, or 128 + signal when stopped by one. Throws Failure for planners that there are not or
 // that this run cannot drive yet, and when a process fails.
 int evaluate(const EvaluateOptions& options);
+
+// Every planner with every seed: those chosen or, where none are, the pairs evaluated by default
+// and [evaluation] seeds. Throws Failure for planners that there are not, and for what is given
+// twice.
+std::vector<EvaluationJob> chosen_jobs(std::vector<std::string> planners,
+                                       std::vector<std::uint64_t> seeds, std::int64_t steps,
+                                       const RunConfig& config);
+
+// --jobs, or the number of cores. Throws Failure when it is less than 1.
+int parallel_jobs(std::optional<int> jobs);
 
 // Throws Failure when the run's newest checkpoint does not have what the planner drives with.
 void check_can_drive(const std::string& planner, const RunDirectory& directory,

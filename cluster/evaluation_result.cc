@@ -28,6 +28,7 @@ EpisodeResult parse_episode(const json& entry) {
   read(entry.at("collisions"), result.collisions);
   read(entry.at("lane_changes"), result.lane_changes);
   read(entry.at("hard_brakes"), result.hard_brakes);
+  read(entry.at("bypasses"), result.bypasses);
   read(entry.at("distance_m"), result.distance_m);
   result.lane_steps = whole_numbers<std::int64_t>(entry.at("lane_steps"));
   return result;
@@ -55,6 +56,7 @@ EvaluationResult parse_evaluation(const json& json, const std::string& name) {
            result.collisions_by_kind[kind]);
     }
     read(json.at("lane_changes"), result.lane_changes);
+    read(json.at("bypasses"), result.bypasses);
     read(json.at("mean_speed_kph"), result.mean_speed_kph);
     read(json.at("distance_km"), result.distance_km);
     for (const auto& entry : json.at("per_episode")) {
@@ -87,6 +89,7 @@ nlohmann::ordered_json evaluation_json(const std::vector<EvaluationResult>& resu
                     {"collisions", result.collisions},
                     {"collisions_by_kind", kinds},
                     {"lane_changes", result.lane_changes},
+                    {"bypasses", result.bypasses},
                     {"mean_speed_kph", result.mean_speed_kph},
                     {"distance_km", result.distance_km}});
   }

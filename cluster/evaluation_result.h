@@ -21,6 +21,7 @@ struct EpisodeResult {
   std::int64_t hard_brakes = 0;
   double distance_m = 0.0;
   std::vector<std::int64_t> lane_steps;  // by lane, from the right
+  std::int64_t bypasses = 0;             // vehicles and objects passed within the lane
 };
 
 // One planner pair on the test episodes of one evaluation seed. Counts are totals over the steps.
@@ -33,6 +34,7 @@ struct EvaluationResult {
   std::int64_t collisions = 0;
   std::array<std::int64_t, kCollisionKinds.size()> collisions_by_kind{};
   std::int64_t lane_changes = 0;
+  std::int64_t bypasses = 0;
   double mean_speed_kph = 0.0;
   double distance_km = 0.0;
   std::vector<EpisodeResult> per_episode;

@@ -121,12 +121,17 @@ ProcessPlan training_process(const Run& run, const fs::path& log) {
   for (const std::string& setting : run.training->settings) {
     plan.argv.insert(plan.argv.end(), {"--set", setting});
   }
+  if (!run.training->from.empty()) {
+    const std::string from = fmt::format("{}-{}", run.training->from, run.seed);
+    plan.argv.insert(plan.argv.end(), {"--from", (run.root.parent_path() / from).string()});
+  }
   return plan;
 }
 
 // Both return the signal that stopped them, or 0.
 int train_all(const std::vector<Run>& runs, const fs::path& directory, int cores) {
   std::vector<ProcessPlan> plan;
+  std::vector<ProcessPlan> later;  // those that begin with what is trained first
   std::vector<StepTask> tasks;
   for (const Run& run : runs) {
     if (fs::exists(run.root / "manifest.json")) check_same_settings(run);
@@ -141,14 +146,19 @@ int train_all(const std::vector<Run>& runs, const fs::path& directory, int cores
                        return line ? std::optional(steps(line->round + 1)) : std::nullopt;
                      }});
     if (done < schedule.rounds()) {
-      plan.push_back(training_process(run, directory / "log" / (run.name() + ".log")));
+      (run.training->from.empty() ? plan : later)
+          .push_back(training_process(run, directory / "log" / (run.name() + ".log")));
     }
   }
   Limits limits;
   limits.others = Milliseconds(10'000);  // each of them ends processes of its own
   StepProgress progress("training", std::move(tasks));
-  return run_queue(plan, std::max(1, cores / kCoresPerTraining), limits, [&] { progress.tick(); })
-      .signal;
+  for (const auto& queue : {plan, later}) {
+    const Ending ending =
+        run_queue(queue, std::max(1, cores / kCoresPerTraining), limits, [&] { progress.tick(); });
+    if (ending.signal != 0) return ending.signal;
+  }
+  return 0;
 }
 
 bool is_done(const fs::path& file, const EvaluationJob& job) {

@@ -106,6 +106,7 @@ TrainingArm parse_training(Table& table, const std::filesystem::path& folder,
   training.scenario = folder / table.required<std::string>("scenario");
   training.settings =
       table.optional<std::vector<std::string>>("settings").value_or(std::vector<std::string>{});
+  training.from = table.optional<std::string>("from").value_or("");
   for (const auto& file : table.required<std::vector<std::string>>("evaluate_in")) {
     training.evaluate_in.push_back(folder / file);
   }
@@ -126,6 +127,21 @@ TrainingArm parse_training(Table& table, const std::filesystem::path& folder,
                   scenario.stem().string());
   }
   return training;
+}
+
+// `trainings` ends with `arm`.
+void check_from(const TrainingArm& arm, const std::vector<TrainingArm>& trainings,
+                const std::string& place) {
+  if (arm.from.empty()) return;
+  const auto from = std::ranges::find(trainings, arm.from, &TrainingArm::name);
+  if (from == trainings.end() || &*from == &trainings.back() || !from->from.empty()) {
+    throw Failure("{}: from = \"{}\": must be a training above that begins with random networks",
+                  place, arm.from);
+  }
+  for (const std::uint64_t seed : arm.training_seeds) {
+    if (std::ranges::find(from->training_seeds, seed) != from->training_seeds.end()) continue;
+    throw Failure("{}: from = \"{}\": that one has no training seed {}", place, arm.from, seed);
+  }
 }
 
 }  // namespace
@@ -151,9 +167,10 @@ Experiment load_experiment(const std::filesystem::path& file) {
     if (!entry.is_object()) throw Failure("{} is no table", training.place());
     experiment.trainings.push_back(
         parse_training(training, file.parent_path(), planners, training_seeds));
-    if (names.insert(experiment.trainings.back().name).second) continue;
-    throw Failure("{}: there is another one of the name {}", training.place(),
-                  experiment.trainings.back().name);
+    const TrainingArm& arm = experiment.trainings.back();
+    check_from(arm, experiment.trainings, training.place());
+    if (names.insert(arm.name).second) continue;
+    throw Failure("{}: there is another one of the name {}", training.place(), arm.name);
   }
   table.know("training");
   table.refuse_unknown();

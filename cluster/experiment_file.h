@@ -9,6 +9,7 @@
 //   name = "paper"
 //   scenario = "../paper.toml"              # to train in; files are relative to this one
 //   settings = ["mop.risk_weight=0"]        # over the scenario; none unless given
+//   from = "other"                          # begins with the networks of that training, same seed
 //   evaluate_in = ["../paper.toml", "../dense.toml"]
 //   planners = ["hierarchical"]             # planners and training_seeds: for this one only
 #pragma once
@@ -24,6 +25,7 @@ struct TrainingArm {
   std::string name;
   std::filesystem::path scenario;
   std::vector<std::string> settings;
+  std::string from;  // name of an earlier one; empty: begins with random networks
   std::vector<std::filesystem::path> evaluate_in;
   std::vector<std::string> planners;
   std::vector<std::uint64_t> training_seeds;

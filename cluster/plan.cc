@@ -55,4 +55,19 @@ std::filesystem::path evaluation_file(const EvaluationJob& job, const RunDirecto
   return directory.evaluation() / fmt::format("{}_{}.json", job.planner, job.seed);
 }
 
+ProcessPlan hindsight_process(const EvaluationJob& job, const HindsightLimits& limits,
+                              const RunDirectory& directory,
+                              const std::filesystem::path& programs) {
+  const std::string name = fmt::format("hindsight-{}-{}", job.planner, job.seed);
+  return {name,
+          {(programs / "corridor-actor").string(), directory.root().string(), "--look-back",
+           job.planner, "--seed", std::to_string(job.seed), "--actions",
+           std::to_string(limits.actions), "--attempts", std::to_string(limits.attempts)},
+          directory.log(name)};
+}
+
+std::filesystem::path hindsight_file(const EvaluationJob& job, const RunDirectory& directory) {
+  return directory.hindsight() / fmt::format("{}_{}.json", job.planner, job.seed);
+}
+
 }  // namespace corridor::cluster

@@ -51,4 +51,15 @@ ProcessPlan evaluation_process(const EvaluationJob& job, const RunDirectory& dir
 // What that process writes.
 std::filesystem::path evaluation_file(const EvaluationJob& job, const RunDirectory& directory);
 
+// How far a look back goes: by the last so many actions, with so many attempts for each number.
+struct HindsightLimits {
+  int actions = 0;
+  std::int64_t attempts = 0;
+};
+// Looks back on the collisions of what an evaluation in `directory` wrote.
+ProcessPlan hindsight_process(const EvaluationJob& job, const HindsightLimits& limits,
+                              const RunDirectory& directory, const std::filesystem::path& programs);
+// What that process writes.
+std::filesystem::path hindsight_file(const EvaluationJob& job, const RunDirectory& directory);
+
 }  // namespace corridor::cluster

@@ -26,6 +26,7 @@ double thousands_of_steps(const EpisodeResult& episode, double) {
   return static_cast<double>(episode.steps) / kPer;
 }
 double kilometres(const EpisodeResult& episode) { return episode.distance_m / 1000.0; }
+double kilometres_driven(const EpisodeResult& episode, double) { return kilometres(episode); }
 double lane_changes(const EpisodeResult& episode) {
   return static_cast<double>(episode.lane_changes);
 }
@@ -39,8 +40,9 @@ constexpr Mean kMeans[] = {
      }},
     {Quantity::kHardBrakes,
      [](const EpisodeResult& e) { return static_cast<double>(e.hard_brakes); }, thousands_of_steps},
-    {Quantity::kLaneChangesPerKm, lane_changes,
-     [](const EpisodeResult& e, double) { return kilometres(e); }},
+    {Quantity::kLaneChangesPerKm, lane_changes, kilometres_driven},
+    {Quantity::kBypassesPerKm,
+     [](const EpisodeResult& e) { return static_cast<double>(e.bypasses); }, kilometres_driven},
 };
 
 // What is drawn by the bootstrap: episodes, or training seeds.

@@ -48,8 +48,9 @@ enum class Quantity {
   kHardBrakes,
   kCollisionsPerKm,
   kLaneChangesPerKm,
+  kBypassesPerKm,
 };
-inline constexpr std::size_t kQuantities = 11;
+inline constexpr std::size_t kQuantities = 12;
 
 // By quantity, sums per 1000 steps but for speed (km/h) and what is named per km.
 using Estimates = std::array<Estimate, kQuantities>;

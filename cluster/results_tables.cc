@@ -79,8 +79,8 @@ Table kinds_table(const std::vector<Arm>& arms) {
 
 Table distance_table(const std::vector<Arm>& arms) {
   Table table{"Per km, lanes and seeds",
-              {"planner", "km", "collisions/km", "lane changes/km", "lanes %, right first",
-               "training seeds", "evaluation seeds"},
+              {"planner", "km", "collisions/km", "lane changes/km", "bypasses/km",
+               "lanes %, right first", "training seeds", "evaluation seeds"},
               {}};
   for (const Arm& arm : arms) {
     std::string lanes;
@@ -91,6 +91,7 @@ Table distance_table(const std::vector<Arm>& arms) {
                           {number(arm.distance_km, 0)},
                           cell(arm[Quantity::kCollisionsPerKm], 3),
                           cell(arm[Quantity::kLaneChangesPerKm], 2),
+                          cell(arm[Quantity::kBypassesPerKm], 2),
                           {lanes},
                           {arm.training_seeds == 0 ? kNothing : std::to_string(arm.training_seeds)},
                           {std::to_string(arm.evaluation_seeds)}});

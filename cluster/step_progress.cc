@@ -9,8 +9,8 @@
 
 namespace corridor::cluster {
 
-StepProgress::StepProgress(std::string title, std::vector<StepTask> tasks)
-    : title_(std::move(title)), start_s_(monotonic_s()) {
+StepProgress::StepProgress(std::string title, std::vector<StepTask> tasks, std::string unit)
+    : title_(std::move(title)), unit_(std::move(unit)), start_s_(monotonic_s()) {
   for (StepTask& task : tasks) {
     done_at_start_ += task.done;
     LineTail tail(task.file);
@@ -35,11 +35,11 @@ std::string StepProgress::headline(double now_s) const {
     total += task.steps;
   }
   const double share = total > 0 ? static_cast<double>(done) / static_cast<double>(total) : 1.0;
-  std::string text = fmt::format("{} {} {:5.1f} %  {} of {} steps", title_, progress_bar(share, 20),
-                                 100.0 * share, grouped(done), grouped(total));
+  std::string text = fmt::format("{} {} {:5.1f} %  {} of {} {}", title_, progress_bar(share, 20),
+                                 100.0 * share, grouped(done), grouped(total), unit_);
   if (done > done_at_start_ && now_s > start_s_) {
     const double rate = static_cast<double>(done - done_at_start_) / (now_s - start_s_);
-    text += fmt::format("  {} steps/s  {} left", grouped(std::llround(rate)),
+    text += fmt::format("  {} {}/s  {} left", grouped(std::llround(rate)), unit_,
                         duration_text(static_cast<double>(total - done) / rate));
   }
   return text;

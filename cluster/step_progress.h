@@ -23,7 +23,8 @@ struct StepTask {
 
 class StepProgress {
  public:
-  StepProgress(std::string title, std::vector<StepTask> tasks);
+  // `unit`: what is counted, if not steps.
+  StepProgress(std::string title, std::vector<StepTask> tasks, std::string unit = "steps");
 
   // Reads what is new and shows it, when that would be seen.
   void tick();
@@ -39,6 +40,7 @@ class StepProgress {
     LineTail tail;
   };
   std::string title_;
+  std::string unit_;
   std::vector<Task> tasks_;
   double start_s_;
   std::int64_t done_at_start_ = 0;

@@ -16,6 +16,7 @@
 #include "cluster/training_scalars.h"
 #include "proto/checkpoints.h"
 #include "proto/failure.h"
+#include "proto/networks.h"
 #include "proto/program.h"
 #include "proto/run_config.h"
 #include "proto/run_directory.h"
@@ -226,6 +227,20 @@ RunConfig changed_config(const ResumeOptions& options, const RunDirectory& direc
   return config;
 }
 
+std::optional<Networks> networks_to_begin_with(const std::filesystem::path& from,
+                                               const RunConfig& config) {
+  if (from.empty()) {
+    if (config.schedule.mop_commands == "random") return std::nullopt;
+    throw Failure(
+        "schedule.mop_commands = \"learned\": there is no learned BP yet; begin with the networks "
+        "of "
+        "a run, as in --from runs/paper");
+  }
+  const auto networks = newest_networks(RunDirectory::open(from), config);
+  if (!networks) throw Failure("{} has no networks yet: train it first", from.string());
+  return networks;
+}
+
 }  // namespace
 
 bool decides_result(std::string_view key) {
@@ -250,11 +265,14 @@ int train(const TrainOptions& options, const std::string& program) {
   overrides.insert(overrides.end(), options.settings.begin(), options.settings.end());
   const RunConfig config = load_run_config(options.scenario, overrides);
 
+  const std::optional<Networks> given = networks_to_begin_with(options.from, config);
+
   NewRun run(options.run);
   const RunDirectory& directory = run.directory();
   const RunLock lock(directory);
   scenarios::write_sumo_files(config, directory.network().parent_path());
   for (const auto& file : {directory.network(), directory.routes()}) sync_file(file);
+  if (given) write_networks(directory, *given);
   write_file(directory.config(), to_toml(config));
   write_file(directory.manifest(),
              describe_run(draw_run_id(), config, options.scenario).dump(2) + "\n");
@@ -268,6 +286,10 @@ int train(const TrainOptions& options, const std::string& program) {
 
 int resume(const ResumeOptions& options, const std::string& program) {
   const RunDirectory directory = RunDirectory::open(options.run);
+  if (read_json(directory.manifest()).contains("fingerprint")) {
+    throw Failure("{} is an exported run: train one with --from {} instead", options.run.string(),
+                  options.run.string());
+  }
   const RunLock lock(directory);
   const RunConfig config = changed_config(options, directory);
   for (const std::string& line : clean_up(directory)) {

@@ -13,6 +13,7 @@ namespace corridor::cluster {
 struct TrainOptions {
   std::filesystem::path scenario = {};
   std::filesystem::path run = {};
+  std::filesystem::path from = {};         // run whose networks to begin with; empty: random ones
   std::optional<int> actors = {};          // run.actors
   std::optional<std::uint64_t> seed = {};  // run.seed
   std::vector<std::string> settings = {};  // "table.key=value", applied last

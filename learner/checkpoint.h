@@ -8,6 +8,7 @@
 
 #include "learner/td_update.h"
 #include "proto/messages.h"
+#include "proto/networks.h"
 #include "proto/schedule.h"
 #include "proto/settings.h"
 #include "proto/tensor_file.h"
@@ -33,14 +34,9 @@ struct LearnerState {
   bool operator==(const LearnerState&) const = default;
 };
 
-// The two networks that a user should drive with now: the best so far, else the newest.
-struct Networks {
-  std::vector<float> mop;
-  std::vector<float> bp;
-};
-
 Phase phase_in_progress(const Schedule& schedule, std::uint64_t next_round);
 
+// Those that a user should drive with now: of the phase in progress the best so far, else the newest.
 Networks networks_to_use(const LearnerState& state, Phase phase);
 
 // Tensors "mop" and "bp": networks_to_use; metadata "mop.shape" and "bp.shape": their NetworkShape

@@ -48,12 +48,13 @@ std::vector<float> running_average(std::vector<float> average, const std::vector
   return average;
 }
 
-LearnerState initial_state(const RunConfig& config) {
+LearnerState initial_state(const RunConfig& config, const std::optional<Networks>& given) {
   const auto initial = [&](Phase phase) {
     return initial_parameters(config.network(phase), config.run.seed, phase,
                               config.phase(phase).networks());
   };
-  Weights first{0, initial(Phase::kMop), initial(Phase::kBp)};
+  Weights first{0, given ? given->mop : initial(Phase::kMop),
+                given ? given->bp : initial(Phase::kBp)};
   LearnerState state;
   state.td = initial_td_state(first.mop);
   state.published.push_back(std::move(first));
@@ -62,7 +63,7 @@ LearnerState initial_state(const RunConfig& config) {
 
 LearnerState load_state(const RunConfig& config, const RunDirectory& directory) {
   const auto checkpoint = Checkpoints(directory.checkpoints()).newest();
-  if (!checkpoint) return initial_state(config);
+  if (!checkpoint) return initial_state(config, given_networks(directory, config));
   return from_tensors(read_checkpoint_file(*checkpoint, kLearnerFile), config,
                       (*checkpoint / kLearnerFile).string());
 }

@@ -39,8 +39,9 @@ struct Surroundings {
 std::vector<float> running_average(std::vector<float> average, const std::vector<float>& newest,
                                    std::uint32_t updates, std::uint64_t window_updates);
 
-// Before the first block: version 0 is published.
-LearnerState initial_state(const RunConfig& config);
+// Before the first block: version 0 is published, with the networks that the run was given, else
+// random ones.
+LearnerState initial_state(const RunConfig& config, const std::optional<Networks>& given = {});
 
 // The newest checkpoint's state, else the initial one. Throws Failure when the checkpoint is
 // damaged or the configuration has changed.

@@ -65,6 +65,29 @@ void check_traffic(const TrafficSettings& traffic) {
           traffic.slow_share, traffic.truck_share);
 }
 
+// An object at one edge of a lane must leave clear the corridor furthest from it that the ego may
+// use without intruding on the next lane.
+void check_objects(const RunConfig& config) {
+  const TrafficSettings& traffic = config.traffic;
+  if (traffic.objects_per_km == 0.0) return;
+  const double corridor_m = config.road.lane_width_m / config.planner.corridors_per_lane;
+  const double off_middle_m = (config.road.lane_width_m - config.ego.width_m) / 2;
+  const double last_centre_m =
+      config.road.lane_width_m / 2 + std::floor(off_middle_m / corridor_m + 1e-9) * corridor_m;
+  const double room_m = last_centre_m - config.ego.width_m / 2 - config.planner.side_clearance_m;
+  require(
+      traffic.object_reach_m() <= room_m,
+      "traffic.object_width_m = {} leaves the ego no corridor to go around in its lane: at most "
+      "{:.2f} do",
+      traffic.object_width_m, std::max(0.0, room_m - TrafficSettings::kObjectMargin_m));
+  // Collisions are looked for at the end of each step.
+  const double step_m = config.road.speed_limit_mps * config.simulation.step_s;
+  require(traffic.object_length_m + config.ego.length_m >= step_m,
+          "traffic.object_length_m = {} is so short that the ego can jump over it in a step of {} "
+          "s: at least {:.2f} is needed",
+          traffic.object_length_m, config.simulation.step_s, step_m - config.ego.length_m);
+}
+
 void check_planners(const RunConfig& config) {
   require(config.planner.corridors_per_lane % 2 == 1,
           "planner.corridors_per_lane = {} must be odd, so that there is a middle",
@@ -113,6 +136,7 @@ void check_config(const RunConfig& config, const std::string& name) {
     check_road(config);
     check_traffic(config.traffic);
     check_planners(config);
+    check_objects(config);
     check_dqn(config, Phase::kMop);
     check_dqn(config, Phase::kBp);
     check_run(config);

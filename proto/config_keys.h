@@ -68,6 +68,12 @@ void describe(TrafficSettings& traffic, Visitor& v) {
            "neighbours that change into the ego's lane without looking");
   v.number("blind_duration_s", traffic.blind_duration_s, 0.0, 60.0, "");
   v.number("blind_range_m", traffic.blind_range_m, 0.0, 1000.0, "of the ego, along the road");
+  v.number("objects_per_km", traffic.objects_per_km, 0.0, 20.0,
+           "beside the vehicles: narrow objects at a lane's edge");
+  v.number("object_width_m", traffic.object_width_m, 0.1, 3.0,
+           "leaves the ego room to go around within the lane");
+  v.number("object_length_m", traffic.object_length_m, 0.1, 20.0, "");
+  v.number("object_speed_mps", traffic.object_speed_mps, 0.0, 5.0, "0: stopped");
 }
 
 template <typename Visitor>
@@ -215,6 +221,8 @@ void describe(ScheduleSettings& schedule, Visitor& v) {
            "on seeds of its own, the same each time");
   v.number("selection_collision_cost", schedule.selection_collision_cost, 0.0, 1e6,
            "best = reward - this * collisions, per 1000 steps");
+  v.choice("mop_commands", schedule.mop_commands, {"random", "learned"},
+           "the BP that asks while the MoP is trained; learned: needs train --from");
   v.number("checkpoint_every_steps", schedule.checkpoint_every_steps, 1, kStepsMax, "");
   v.number("checkpoints_kept", schedule.checkpoints_kept, 1, 1000, "");
 }

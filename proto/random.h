@@ -24,6 +24,7 @@ enum class Purpose : std::uint64_t {
   kBootstrap = 11,        // (draw): resampling for confidence intervals
   kWireDelay = 12,        // tests that slow processes at random
   kChaos = 13,            // tests that kill processes at random
+  kObject = 14,           // (episode seed, object, draw)
 };
 
 // 64 uniform bits. Cost: a few ns for each index.

@@ -5,8 +5,10 @@
 //   sumo/                        network and traffic for SUMO (scenarios/)
 //   log/<process>.log            one text log a process
 //   metrics/<process>.jsonl      one JSON-lines file a process (proto/metrics.h)
+//   networks.safetensors         networks that were given to it (proto/networks.h)
 //   checkpoints/<round>/         proto/checkpoints.h
-//   evaluation/                  <planner>_<seed>.json; episodes/<planner>_<seed>_<episode>.json
+//   evaluation/                  <planner>_<seed>.json; episodes/<planner>_<seed>_<episode>.json;
+//                                hindsight/<planner>_<seed>.json
 //   scenarios/<name>/            the same, of evaluations in another scenario's world
 //   tensorboard/                 event files (cluster/tensorboard.h)
 //   report/                      what `corridor report` wrote
@@ -63,10 +65,12 @@ class RunDirectory {
   std::filesystem::path routes() const { return root_ / "sumo" / "traffic.rou.xml"; }
   std::filesystem::path log(std::string_view process) const;
   std::filesystem::path metrics(std::string_view process) const;
+  std::filesystem::path networks() const { return root_ / "networks.safetensors"; }
   std::filesystem::path checkpoints() const { return root_ / "checkpoints"; }
   std::filesystem::path tensorboard() const { return root_ / "tensorboard"; }
   std::filesystem::path evaluation() const { return root_ / "evaluation"; }
   std::filesystem::path episodes() const { return root_ / "evaluation" / "episodes"; }
+  std::filesystem::path hindsight() const { return root_ / "evaluation" / "hindsight"; }
 
  private:
   explicit RunDirectory(std::filesystem::path root) : root_(std::move(root)) {}

@@ -47,6 +47,17 @@ struct TrafficSettings {
   double blind_rate_per_s = 0.01;
   double blind_duration_s = 4.0;
   double blind_range_m = 15.0;  // of the ego, along the road
+  // Objects, beside the vehicles: narrow, at the right or left edge of a drawn lane, so that
+  // whoever comes can go around without changing lane. Each 1/objects_per_km of the road has one.
+  double objects_per_km = 0.0;
+  double object_width_m = 0.75;   // so wide that the ego in the lane's middle would hit it
+  double object_length_m = 9.0;  // so long that nobody jumps over it in one step
+  double object_speed_mps = 0.0;
+
+  // Up to where an object takes its lane: its width, and a hair's breadth that keeps it, whatever
+  // the rounding, out of the next lane.
+  double object_reach_m() const { return object_width_m + kObjectMargin_m; }
+  static constexpr double kObjectMargin_m = 0.01;
 };
 
 // [ego] The car that is driven, and its kinematic limits.
@@ -177,6 +188,8 @@ struct ScheduleSettings {
   std::int64_t selection_every_steps = 100'000;  // greedy evaluation; all actors together
   int selection_episodes = 16;                   // on seeds of its own, the same each time
   double selection_collision_cost = 50.0;  // best = reward - cost * collisions, per 1000 steps
+  // Which BP asks while the MoP is trained: "random", or "learned", of a run that was given networks.
+  std::string mop_commands = "random";
   std::int64_t checkpoint_every_steps = 50'000;
   int checkpoints_kept = 2;
 };

@@ -201,6 +201,9 @@ std::string vehicle_types_xml(const TrafficSettings& traffic, const EgoSettings&
           fmt::format("{} {} latAlignment=\"{}\"", kinds[kind], keep_right, alignment));
     }
   }
+  xml += vehicle_type_xml(
+      "object", fmt::format("length=\"{}\" width=\"{}\" minGap=\"0\" sigma=\"0\" color=\"white\"",
+                            traffic.object_length_m, traffic.object_width_m));
   return xml + "  <route id=\"road\" edges=\"road\"/>\n</routes>\n";
 }
 

@@ -2,8 +2,9 @@
 // own tools open (`sumo-gui road.sumocfg`).
 //
 // The road is one straight edge `road` with lanes `road_0` (right) to `road_<n-1>`, on which runs
-// the route `road`. Vehicle types are `ego`, and `<kind>_<alignment>` for each of kVehicleKinds and
-// kAlignments: the kind fixes size and speed, the alignment where in its lane a driver keeps.
+// the route `road`. Vehicle types are `ego`, `object`, and `<kind>_<alignment>` for each of
+// kVehicleKinds and kAlignments: the kind fixes size and speed, the alignment where in its lane a
+// driver keeps.
 #pragma once
 
 #include <array>

@@ -23,6 +23,7 @@ int index_of(const MopAction& action);
 struct Target {
   int corridor = 0;
   double set_point_mps = 0.0;
+  bool operator==(const Target&) const = default;
 };
 
 // Clamped to the corridors in which the ego stays on the road, and to [0, speed limit].

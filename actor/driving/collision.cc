@@ -8,17 +8,8 @@
 namespace corridor::driving {
 namespace {
 
-bool overlap_across(const Ego& ego, const Vehicle& other, const EgoSettings& size) {
-  return std::abs(ego.d_m - other.d_m) < (size.width_m + other.width_m) / 2;
-}
-
 bool overlap_along(const Ego& ego, const Vehicle& other, const EgoSettings& size) {
   return other.s_m - other.length_m < ego.s_m && ego.s_m - size.length_m < other.s_m;
-}
-
-const Vehicle* find(const Scene& scene, int id) {
-  const auto found = std::ranges::lower_bound(scene.others, id, {}, &Vehicle::id);
-  return found != scene.others.end() && found->id == id ? &*found : nullptr;
 }
 
 CollisionKind rear_collision(const Ego& ego, const Vehicle& other) {
@@ -32,7 +23,7 @@ CollisionKind side_collision(double ego_approach, double other_approach) {
 
 CollisionKind kind_of(const Scene& before, const Scene& after, const Vehicle& other,
                       const EgoSettings& size) {
-  if (const Vehicle* earlier = find(before, other.id)) {
+  if (const Vehicle* earlier = find_vehicle(before, other.id)) {
     // Who is behind is asked one step earlier too: in a fast approach the front bumper of whoever
     // runs into the other may by now be the one further ahead.
     if (overlap_across(before.ego, *earlier, size)) return rear_collision(before.ego, *earlier);
@@ -56,6 +47,10 @@ const char* collision_kind_name(CollisionKind kind) {
   const auto index = static_cast<int>(kind);
   CORRIDOR_CHECK(index >= 0 && index < kCollisionKinds, "collision kind {}", index);
   return kNames[index];
+}
+
+bool overlap_across(const Ego& ego, const Vehicle& other, const EgoSettings& size) {
+  return std::abs(ego.d_m - other.d_m) < (size.width_m + other.width_m) / 2;
 }
 
 std::optional<Collision> find_collision(const Scene& before, const Scene& after,

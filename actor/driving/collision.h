@@ -24,6 +24,9 @@ struct Collision {
   bool operator==(const Collision&) const = default;
 };
 
+// Whether the two would touch if one of them drove on along the road far enough.
+bool overlap_across(const Ego& ego, const Vehicle& other, const EgoSettings& size);
+
 // The first (lowest id) vehicle that overlaps the ego in `after`, if any. Where the two already
 // overlapped across the road one step earlier (`before`), it is a rear collision, by whoever is
 // behind; otherwise a side collision, by whoever moved further towards the other across the road

@@ -5,6 +5,7 @@
 // the middle of its front bumper. Lanes and corridors count from the right, 0 first.
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 namespace corridor::driving {
@@ -35,6 +36,12 @@ struct Scene {
   std::vector<Vehicle> others;  // ascending by id
   bool operator==(const Scene&) const = default;
 };
+
+// Null when it is not there (any more).
+inline const Vehicle* find_vehicle(const Scene& scene, int id) {
+  const auto found = std::ranges::lower_bound(scene.others, id, {}, &Vehicle::id);
+  return found != scene.others.end() && found->id == id ? &*found : nullptr;
+}
 
 // What the behaviour planner asks for (paper section III-B); the values are its actions.
 enum class Command { kKeep = 0, kLeft = 1, kRight = 2 };

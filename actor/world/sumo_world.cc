@@ -128,6 +128,17 @@ StepResult SumoWorld::step_by_world() {
   });
 }
 
+driving::Scene SumoWorld::take_over() {
+  CORRIDOR_CHECK(running_ && driver_ == EgoDriver::kWorld);
+  return in_sumo("taking over the ego", [&] {
+    driver_ = EgoDriver::kPlanner;
+    obey_trajectories();
+    Ego& ego = scene_.ego;
+    ego.set_point_mps = std::min(ego.speed_mps, settings_.road.speed_limit_mps);
+    return scene_;
+  });
+}
+
 void SumoWorld::simulate() {
   time_.charge(TimePart::kWorld);
   Sumo::step();
@@ -189,6 +200,14 @@ void SumoWorld::add(const Entrance& entrance) {
   SumoVehicle::setSpeedFactor(id, entrance.speed_factor);
   SumoVehicle::moveTo(id, lane_id(entrance.lane), entrance.vehicle.s_m);
   SumoVehicle::setPreviousSpeed(id, entrance.vehicle.speed_mps);
+  if (entrance.type == kObjectType) {
+    // moveToXY, which alone knows of a place across the lane, acts after the next step's movement.
+    const double s_m =
+        entrance.vehicle.s_m + entrance.vehicle.speed_mps * settings_.simulation.step_s;
+    SumoVehicle::moveToXY(id, kEdge, -1, s_m, right_edge_y_m_ + entrance.vehicle.d_m,
+                          libsumo::INVALID_DOUBLE_VALUE, kKeepExactPosition);
+    SumoVehicle::setLaneChangeMode(id, kNoLaneChanges);
+  }
   const auto place =
       std::lower_bound(scene_.others.begin(), scene_.others.end(), entrance.vehicle.id,
                        [](const Vehicle& vehicle, int wanted) { return vehicle.id < wanted; });
@@ -200,7 +219,10 @@ void SumoWorld::add_ego(const driving::Ego& ego, EgoDriver driver) {
   SumoVehicle::add(kEgo, kRoute, kEgo);
   SumoVehicle::moveTo(kEgo, lane_id(lane), ego.s_m);
   SumoVehicle::setPreviousSpeed(kEgo, ego.speed_mps);
-  if (driver == EgoDriver::kWorld) return;
+  if (driver == EgoDriver::kPlanner) obey_trajectories();
+}
+
+void SumoWorld::obey_trajectories() {
   SumoVehicle::setSpeedMode(kEgo, kNoSpeedChecks);
   SumoVehicle::setLaneChangeMode(kEgo, kNoLaneChanges);
 }

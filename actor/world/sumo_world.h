@@ -45,12 +45,14 @@ class SumoWorld : public World {
   driving::Scene begin(const EpisodeStart& start) override;
   StepResult step(const driving::Trajectory& trajectory) override;
   StepResult step_by_world() override;
+  driving::Scene take_over() override;
   void end() override;
 
  private:
   std::vector<std::string> options(const EpisodeStart& start) const;
   TrafficScenario traffic_scenario() const;
   void add_ego(const driving::Ego& ego, EgoDriver driver);
+  void obey_trajectories();
   void add(const Entrance& entrance);
   void apply(const TrafficChange& change);
   void read_others();

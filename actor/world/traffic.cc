@@ -38,6 +38,9 @@ enum Draw : std::uint64_t {
   kSpeedFactor = 10'000,  // + attempt
 };
 
+// What an object's random numbers are for: with its index, the counters of Purpose::kObject.
+enum ObjectDraw : std::uint64_t { kObjectPlace = 0, kObjectLane = 1, kObjectSide = 2 };
+
 const char* kind_name(VehicleKind kind) {
   constexpr const char* kNames[] = {"car", "slow", "truck"};
   return kNames[static_cast<int>(kind)];
@@ -101,9 +104,11 @@ TrafficChange Traffic::decide(const driving::Scene& scene) {
       continue;
     }
     change.leaving.push_back(vehicle.id);
+    if (objects_.erase(vehicle.id) > 0) continue;
     blind_until_.erase(vehicle.id);
     waiting_.push_back(draw(/*ahead=*/ahead_m < 0));
   }
+  place_objects(scene.ego.s_m, road, change);
   let_in(scene.ego.s_m, road, change);
   blind(scene, change);
   return change;
@@ -127,6 +132,42 @@ void Traffic::let_in(double ego_s_m, Road& road, TrafficChange& change) {
   });
 }
 
+void Traffic::place_objects(double ego_s_m, Road& road, TrafficChange& change) {
+  const TrafficSettings& traffic = scenario_.traffic;
+  if (traffic.objects_per_km == 0.0) return;
+  const double end_m = ego_s_m + traffic.window_m;
+  if (object_place_m(next_object_) > end_m) return;
+  for (const Vehicle& other : road) {
+    if (objects_.contains(other.id) && end_m - other.s_m < kObjectSpacing_m) return;
+  }
+  Entrance entrance;
+  entrance.type = kObjectType;
+  entrance.speed_factor = traffic.object_speed_mps / scenario_.road.speed_limit_mps;
+  entrance.vehicle.length_m = traffic.object_length_m;
+  entrance.vehicle.width_m = traffic.object_width_m;
+  const auto lane =
+      static_cast<int>(random_below(static_cast<std::uint64_t>(scenario_.road.lanes), seed_,
+                                    Purpose::kObject, {next_object_, kObjectLane}));
+  if (!place(entrance, lane, end_m, road)) return;
+  const bool right = random_below(2, seed_, Purpose::kObject, {next_object_, kObjectSide}) == 0;
+  const double off_middle_m =
+      (scenario_.road.lane_width_m + traffic.object_width_m) / 2 - traffic.object_reach_m();
+  entrance.vehicle.id = next_id_++;
+  entrance.vehicle.d_m += right ? -off_middle_m : off_middle_m;
+  road.back() = entrance.vehicle;
+  objects_.insert(entrance.vehicle.id);
+  change.entering.push_back(entrance);
+  ++next_object_;
+}
+
+// Where the object comes onto the road at the earliest.
+double Traffic::object_place_m(std::uint64_t index) const {
+  const double section_m = 1000.0 / scenario_.traffic.objects_per_km;
+  const double share = random_unit(seed_, Purpose::kObject, {index, kObjectPlace});
+  return start().s_m + scenario_.traffic.window_m + static_cast<double>(index) * section_m +
+         share * (section_m - kObjectSpacing_m);
+}
+
 // Puts the vehicle there and onto `road`, as fast as it wants to be or as its leader is, when both
 // its leader and its follower then have a safe gap.
 bool Traffic::place(Entrance& entrance, int lane, double s_m, Road& road) const {
@@ -144,6 +185,7 @@ bool Traffic::place(Entrance& entrance, int lane, double s_m, Road& road) const 
   if (leader) {
     const double gap_m = leader->s_m - leader->length_m - s_m;
     if (gap_m < safe_gap_m(speed_mps, leader->speed_mps)) {
+      if (objects_.contains(leader->id)) return false;  // nobody begins at a standstill
       speed_mps = std::min(desired_mps, leader->speed_mps);
     }
     if (gap_m < safe_gap_m(speed_mps, leader->speed_mps)) return false;
@@ -178,7 +220,8 @@ void Traffic::blind(const driving::Scene& scene, TrafficChange& change) {
         std::abs(other.s_m - scene.ego.s_m) <= std::min(traffic.blind_range_m, traffic.window_m);
     const bool beside = std::abs(left_m) > (other.width_m + scenario_.ego.width_m) / 2 &&
                         std::abs(left_m) < 1.5 * scenario_.road.lane_width_m;
-    if (!near || !beside || blind_until_.contains(other.id)) continue;
+    if (!near || !beside || blind_until_.contains(other.id) || objects_.contains(other.id))
+      continue;
     candidates.push_back({other.id, std::copysign(scenario_.road.lane_width_m, left_m)});
   }
   if (candidates.empty()) return;

@@ -6,6 +6,11 @@
 // One that leaves the window is removed, and another, of random kind, enters at the other end as
 // soon as one of the lanes has room there. The road far from the ego is empty.
 //
+// Objects stand, or crawl, at an edge of a lane. They are no part of that number: the road is cut
+// into sections of equal length, each has one object, in a drawn place, and it comes onto the road
+// as soon as the window ahead has reached that place and there is room. Two objects are at least
+// kObjectSpacing_m apart when they come, so that they never block two lanes side by side.
+//
 // Blind drivers: at blind_rate_per_s in all, a vehicle within blind_range_m along the road and
 // beside the ego's lane moves over by one lane width towards the ego without looking, and for
 // blind_duration_s looks at nobody beside it.
@@ -14,6 +19,7 @@
 #include <array>
 #include <cstdint>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -39,7 +45,10 @@ struct TrafficScenario {
   std::array<VehicleSize, kVehicleKinds> sizes;
 };
 
-// A vehicle that is put on the road, in the middle of a lane.
+inline constexpr double kObjectSpacing_m = 40.0;
+inline constexpr const char* kObjectType = "object";  // SUMO's vehicle type
+
+// A vehicle that is put on the road: in the middle of a lane, an object at its edge.
 struct Entrance {
   driving::Vehicle vehicle;
   int lane = 0;
@@ -82,6 +91,8 @@ class Traffic {
   double draw_speed_factor(std::uint64_t id) const;
   bool place(Entrance& entrance, int lane, double s_m, Road& road) const;
   void let_in(double ego_s_m, Road& road, TrafficChange& change);
+  void place_objects(double ego_s_m, Road& road, TrafficChange& change);
+  double object_place_m(std::uint64_t index) const;
   void blind(const driving::Scene& scene, TrafficChange& change);
   driving::Vehicle as_vehicle(const driving::Ego& ego) const;
 
@@ -90,6 +101,8 @@ class Traffic {
   std::uint64_t step_ = 0;
   int next_id_ = 1;
   std::vector<Candidate> waiting_;
+  std::uint64_t next_object_ = 0;
+  std::set<int> objects_;                     // ids of those on the road
   std::map<int, std::uint64_t> blind_until_;  // id -> step at which it sees again
 };
 

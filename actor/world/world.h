@@ -41,6 +41,10 @@ class World {
   virtual StepResult step(const driving::Trajectory& trajectory) = 0;
   virtual StepResult step_by_world() = 0;
 
+  // From here on the ego follows trajectories, in an episode that the world has driven so far. The
+  // scene is as it was, with the ego's speed (at most the speed limit) as its set-point.
+  virtual driving::Scene take_over() = 0;
+
   // Ends the episode in progress, so that its files are complete.
   virtual void end() = 0;
 };

@@ -33,7 +33,7 @@ class Evaluation : public testing::Test {
   TemporaryDirectory temporary;
   RunDirectory run;
   RunConfig config;
-  TrainedNetworks networks;
+  Networks networks;
 };
 
 TEST_F(Evaluation, DrivesExactlyTheStepsAskedForAndSumsThemUp) {

@@ -42,10 +42,18 @@ Weights weights_of(const RunConfig& config, std::uint64_t version) {
 
 TimeAccount account;
 
-class InEachPhase : public testing::TestWithParam<Phase> {
+struct Case {
+  const char* name;
+  Phase phase;
+  const char* mop_commands;
+};
+
+class InEachPhase : public testing::TestWithParam<Case> {
  protected:
+  InEachPhase() { config.schedule.mop_commands = GetParam().mop_commands; }
+
   RunConfig config = small_config();
-  std::uint64_t first = Schedule(config).first_round(GetParam());
+  std::uint64_t first = Schedule(config).first_round(GetParam().phase);
 };
 
 TEST_P(InEachPhase, GivesTheSameChunksForTheSameRounds) {
@@ -107,17 +115,30 @@ TEST_P(InEachPhase, EveryRowIsFiniteWithAPriorityOfItsOwn) {
   FakeWorld world(config);
   PhaseRollout rollout(config, 0, world, account, first, {});
   const Insert chunk = rollout.drive_round(weights_of(config, 0));
-  const RowLayout layout{config.shape(GetParam()).observations};
+  const RowLayout layout{config.shape(GetParam().phase).observations};
   ASSERT_EQ(chunk.rows.size(), chunk.priorities.size() * layout.stride());
   EXPECT_GE(chunk.priorities.size(), 30u);
   for (const float value : chunk.rows) ASSERT_TRUE(std::isfinite(value));
   for (const float value : chunk.priorities) ASSERT_GE(value, 0.0f);
 }
 
-INSTANTIATE_TEST_SUITE_P(Phases, InEachPhase, testing::Values(Phase::kMop, Phase::kBp),
-                         [](const auto& parameter) {
-                           return std::string(phase_name(parameter.param));
-                         });
+INSTANTIATE_TEST_SUITE_P(Phases, InEachPhase,
+                         testing::Values(Case{"MoP", Phase::kMop, "random"},
+                                         Case{"MoPUnderTheLearnedBp", Phase::kMop, "learned"},
+                                         Case{"BP", Phase::kBp, "random"}),
+                         [](const auto& parameter) { return parameter.param.name; });
+
+TEST(PhaseRollout, TheMopIsTrainedUnderTheLearnedBpsCommandsWhereTheScenarioSaysSo) {
+  RunConfig config = small_config();
+  config.schedule.mop_commands = "learned";
+  FakeWorld world_a(config), world_b(config);
+  PhaseRollout a(config, 0, world_a, account, 0, {});
+  PhaseRollout b(config, 0, world_b, account, 0, {});
+  Weights weights = weights_of(config, 0);
+  const Insert under_one = a.drive_round(weights);
+  weights.bp = parameters(weights.bp.size(), 77);
+  EXPECT_NE(under_one.rows, b.drive_round(weights).rows);
+}
 
 TEST(PhaseRollout, ShapingIsInTheRowsOfTheBpAndNotInTheRewardReported) {
   RunConfig plain = small_config();

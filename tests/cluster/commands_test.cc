@@ -30,7 +30,7 @@ Outcome run(std::vector<const char*> arguments) {
   return outcome;
 }
 
-constexpr const char* kCommands[] = {"train",       "resume",  "evaluate", "report",
+constexpr const char* kCommands[] = {"train",       "resume",  "evaluate", "hindsight", "report",
                                      "fingerprint", "redrive", "check"};
 
 TEST(Commands, EveryOneHasHelpWithExamplesAndAVersion) {
@@ -58,6 +58,8 @@ TEST(Commands, AWrongCommandLineIsOneLineThatNamesWhatIsWrongAndWhereHelpIs) {
       {{"evaluate", "run", "--seeds", "1,b"}, "--seeds"},
       {{"evaluate", "run", "--seeds", "1,-2"}, "--seeds"},
       {{"report"}, "DIR"},
+      {{"hindsight", "run", "--actions", "0"}, "--actions"},
+      {{"hindsight", "run", "--attempts", "0"}, "--attempts"},
       {{"redrive", "run"}, "EPISODE"},
   };
   for (const auto& [arguments, named] : wrong) {

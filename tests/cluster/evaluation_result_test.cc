@@ -23,6 +23,7 @@ json episode(int steps, double reward, int collisions) {
           {"lane_changes", 20},
           {"collisions", collisions},
           {"hard_brakes", 5},
+          {"bypasses", 3},
           {"distance_m", 12.5 * steps},
           {"lane_steps", {steps, 0, 0}}};
 }
@@ -37,6 +38,7 @@ json evaluation(const std::string& planner, std::uint64_t seed) {
           {"collisions_by_kind",
            {{"rear_ended", 0}, {"rear_ending", 0}, {"side_by_other", 1}, {"side_by_ego", 0}}},
           {"lane_changes", 40},
+          {"bypasses", 6},
           {"mean_speed_kph", 45.0},
           {"distance_km", 18.75},
           {"per_episode", {episode(1000, 650.0, 0), episode(500, 250.0, 1)}}};
@@ -50,7 +52,7 @@ TEST(EvaluationJson, HasOneObjectAResultWithTheDocumentedFieldsInOrder) {
   for (const auto& [key, value] : list[0].items()) keys += key + " ";
   EXPECT_EQ(keys,
             "planner seed steps episodes bp_reward_per_1000 collisions collisions_by_kind "
-            "lane_changes mean_speed_kph distance_km ");
+            "lane_changes bypasses mean_speed_kph distance_km ");
   json expected = evaluation("sumo", 8);
   expected.erase("per_episode");
   EXPECT_EQ(json::parse(list[1].dump()), expected);

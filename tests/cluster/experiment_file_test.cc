@@ -103,6 +103,20 @@ TEST_F(ExperimentFile, WhatIsWrongIsNamedWithFileAndKey) {
               HasSubstr("none.toml"));
 }
 
+TEST_F(ExperimentFile, ATrainingMayBeginWithTheNetworksOfOneAbove) {
+  const auto on = [](const std::string& further) {
+    return "[[training]]\nname = \"on\"\nscenario = \"a.toml\"\nevaluate_in = [\"a.toml\"]\n" +
+           further;
+  };
+  EXPECT_EQ(load(kHead + kTraining + on("from = \"first\"\n")).trainings[1].from, "first");
+  EXPECT_THAT(failure_of(kHead + kTraining + on("from = \"on\"\n")),
+              HasSubstr("must be a training above"));
+  EXPECT_THAT(failure_of(kHead + on("from = \"first\"\n") + kTraining),
+              HasSubstr("must be a training above"));
+  EXPECT_THAT(failure_of(kHead + kTraining + on("from = \"first\"\ntraining_seeds = [2, 3]\n")),
+              HasSubstr("that one has no training seed 3"));
+}
+
 TEST_F(ExperimentFile, TwoScenariosOfOneNameWouldShareAPlace) {
   std::filesystem::create_directory(temporary_.path() / "other");
   write_file(temporary_.path() / "other" / "a.toml", "");

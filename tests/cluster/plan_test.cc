@@ -66,5 +66,13 @@ TEST_F(Plan, TrajectoriesAreWrittenOnlyWhenAskedFor) {
   EXPECT_EQ(evaluation_file(job, directory_), directory_.evaluation() / "rules+mop_7.json");
 }
 
+TEST_F(Plan, ALookBackIsToldItsLimits) {
+  const EvaluationJob job{"rules+mop", 7, 100};
+  EXPECT_THAT(hindsight_process(job, {4, 1000}, directory_, "/p").argv,
+              ElementsAre("/p/corridor-actor", root_, "--look-back", "rules+mop", "--seed", "7",
+                          "--actions", "4", "--attempts", "1000"));
+  EXPECT_EQ(hindsight_file(job, directory_), directory_.hindsight() / "rules+mop_7.json");
+}
+
 }  // namespace
 }  // namespace corridor::cluster

@@ -10,7 +10,8 @@
 namespace corridor::cluster {
 namespace {
 
-// Episodes of 1000 and 500 steps at 12.5 m/s, 30 lane changes and 15 hard brakes in all.
+// Episodes of 1000 and 500 steps at 12.5 m/s, 30 lane changes, 15 hard brakes and 6 bypasses in
+// all.
 EvaluationResult result(const std::string& planner, std::uint64_t seed, double reward_per_1000,
                         std::int64_t collisions = 3) {
   EvaluationResult result;
@@ -23,8 +24,8 @@ EvaluationResult result(const std::string& planner, std::uint64_t seed, double r
   result.lane_changes = 30;
   result.mean_speed_kph = 45.0;
   result.distance_km = 18.75;
-  result.per_episode = {{1000, reward_per_1000, 0.0, 0, 20, 10, 12500.0, {250, 750}},
-                        {500, 0.5 * reward_per_1000, 0.0, 1, 10, 5, 6250.0, {125, 375}}};
+  result.per_episode = {{1000, reward_per_1000, 0.0, 0, 20, 10, 12500.0, {250, 750}, 4},
+                        {500, 0.5 * reward_per_1000, 0.0, 1, 10, 5, 6250.0, {125, 375}, 2}};
   return result;
 }
 
@@ -56,6 +57,7 @@ TEST(Arms, OfOneTrainingSeedAreSumsOverAllEpisodes) {
   EXPECT_GT(arm[Quantity::kBpReward].interval.high, 450.0);
   EXPECT_DOUBLE_EQ(arm[Quantity::kLaneChanges].value, 20.0);
   EXPECT_DOUBLE_EQ(arm[Quantity::kLaneChangesPerKm].value, 60 / 37.5);
+  EXPECT_DOUBLE_EQ(arm[Quantity::kBypassesPerKm].value, 12 / 37.5);
   EXPECT_DOUBLE_EQ(arm[Quantity::kSpeed].value, 45.0);
   EXPECT_NEAR(arm[Quantity::kSpeed].interval.low, 45.0, 1e-9);
   EXPECT_DOUBLE_EQ(arm[Quantity::kHardBrakes].value, 10.0);

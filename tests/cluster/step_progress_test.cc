@@ -34,6 +34,8 @@ TEST(StepProgress, AddsUpWhatTheFilesSay) {
 
 TEST(StepProgress, OfNothingIsComplete) {
   EXPECT_THAT(StepProgress("training", {}).headline(monotonic_s()), HasSubstr("100.0 %"));
+  EXPECT_THAT(StepProgress("hindsight", {}, "collisions").headline(monotonic_s()),
+              HasSubstr("0 of 0 collisions"));
 }
 
 }  // namespace

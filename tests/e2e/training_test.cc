@@ -54,6 +54,27 @@ TEST(Training, TrainsBothPlannersEvaluatesThemAndDrivesTheirEpisodesAgain) {
     EXPECT_TRUE(std::filesystem::exists(run / "report" / file)) << file;
   }
 
+  const std::vector<std::string> look_back = {
+      kCorridor, "hindsight", run, "--seeds", "5,6", "--planners", "hierarchical,rules"};
+  const auto in_hindsight = [&] {
+    const CommandResult result = run_command(look_back, kDeadline_s);
+    EXPECT_EQ(result.status, 0) << result.output;
+    EXPECT_NE(result.output.find("floor"), std::string::npos) << result.output;
+    expect_nothing_left(run);
+    std::string all;
+    for (const char* name : {"hierarchical_5", "hierarchical_6", "rules_5", "rules_6"}) {
+      std::ostringstream text;
+      text << std::ifstream(run / "evaluation" / "hindsight" / (std::string(name) + ".json"))
+                  .rdbuf();
+      EXPECT_FALSE(text.str().empty()) << name;
+      all += text.str();
+    }
+    return all;
+  };
+  const std::string first_time = in_hindsight();
+  std::filesystem::remove_all(run / "evaluation" / "hindsight");
+  EXPECT_EQ(in_hindsight(), first_time);
+
   // Nothing is left to do.
   const CommandResult again = run_command({kCorridor, "resume", run}, kDeadline_s);
   EXPECT_EQ(again.status, 0) << again.output;

@@ -38,6 +38,20 @@ const std::vector<Contradiction>& contradictions() {
        "traffic.speed_factor_mean = 0.8 is above traffic.speed_factor_max = 0.7"},
       {[](RunConfig& c) { c.traffic.slow_share = 0.95, c.traffic.truck_share = 0.1; },
        "traffic.slow_share = 0.95 and traffic.truck_share = 0.1"},
+      {[](RunConfig& c) {
+         c.road.lane_width_m = 3.2, c.ego.width_m = 1.8, c.planner.side_clearance_m = 0.15;
+         c.planner.corridors_per_lane = 5;
+         c.traffic.objects_per_km = 3.0, c.traffic.object_width_m = 1.2;
+       },
+       "traffic.object_width_m = 1.2 leaves the ego no corridor to go around in its lane: at most "
+       "1.18 do"},
+      {[](RunConfig& c) {
+         c.road.speed_limit_mps = 12.0, c.simulation.step_s = 1.0, c.ego.length_m = 5.0;
+         c.traffic.objects_per_km = 3.0, c.traffic.object_length_m = 6.9;
+       },
+       "traffic.object_length_m = 6.9 is so short that the ego can jump over it in a step of 1 s: "
+       "at "
+       "least 7.00 is needed"},
       {[](RunConfig& c) { c.planner.corridors_per_lane = 4; },
        "planner.corridors_per_lane = 4 must be odd"},
       {[](RunConfig& c) {
@@ -90,6 +104,16 @@ TEST(ConfigChecks, ContradictionsAreNamed) {
       EXPECT_THAT(failure.what(), testing::HasSubstr(contradiction.text));
     }
   }
+}
+
+TEST(ConfigChecks, ObjectsThatLeaveJustRoomAreFineAndSoAreAnyWhereThereAreNone) {
+  RunConfig config;
+  config.traffic.objects_per_km = 3.0;
+  config.traffic.object_width_m = 1.18;
+  EXPECT_NO_THROW(check_config(config, "x"));
+  config.traffic.objects_per_km = 0.0;
+  config.traffic.object_width_m = 3.0;
+  EXPECT_NO_THROW(check_config(config, "x"));
 }
 
 TEST(ConfigChecks, LaneWidthsThatOnlyRoundingSetsApartFromAMultipleAreFine) {

@@ -85,6 +85,8 @@ TEST_F(SumoFiles, DescribeEveryKindWithEveryAlignment) {
   traffic.speed_factor_min = 0.5;
   traffic.speed_factor_max = 1.1;
   traffic.keep_right = 0.0;
+  traffic.object_length_m = 2.5;
+  traffic.object_width_m = 0.5;
   EgoSettings ego;
   ego.length_m = 4.5;
   const std::string xml = vehicle_types_xml(traffic, ego);
@@ -96,6 +98,7 @@ TEST_F(SumoFiles, DescribeEveryKindWithEveryAlignment) {
   EXPECT_THAT(xml, HasSubstr("speedFactor=\"normc(0.7,0.1,0.5,1.1)\""));
   EXPECT_THAT(xml, HasSubstr("lcKeepRight=\"0\""));
   EXPECT_THAT(xml, HasSubstr("<vType id=\"ego\" speedFactor=\"1\" speedDev=\"0\" length=\"4.5\""));
+  EXPECT_THAT(xml, HasSubstr("<vType id=\"object\" length=\"2.5\" width=\"0.5\""));
   EXPECT_THAT(xml, HasSubstr("<route id=\"road\" edges=\"road\"/>"));
 }
 
@@ -168,7 +171,8 @@ TEST(Scenarios, ThePapersBudgetsAreThePapers) {
 // Anything else would make results on them no comparison.
 TEST(Scenarios, TheOtherTrafficDiffersInTrafficOnly) {
   const RunConfig paper = load_run_config(kScenarios / "paper.toml");
-  for (const char* name : {"calm.toml", "risky.toml", "dense.toml", "sparse.toml"}) {
+  for (const char* name :
+       {"calm.toml", "risky.toml", "dense.toml", "sparse.toml", "partial_block.toml"}) {
     RunConfig other = load_run_config(kScenarios / name);
     EXPECT_NE(to_toml(other), to_toml(paper)) << name;
     other.traffic = paper.traffic;
@@ -183,6 +187,16 @@ TEST(Scenarios, AnEpisodeOfHalfSecondStepsLastsAsLong) {
   EXPECT_EQ(half.simulation.episode_steps, paper.simulation.episode_steps * 2);
   half.simulation = paper.simulation;
   EXPECT_EQ(to_toml(half), to_toml(paper));
+}
+
+TEST(Scenarios, TrainingOnDrivesWhereItBegan) {
+  const RunConfig paper = load_run_config(kScenarios / "paper.toml");
+  const RunConfig joint = load_run_config(kScenarios / "joint.toml");
+  EXPECT_EQ(driving_part(joint), driving_part(paper));
+  for (const Phase phase : {Phase::kMop, Phase::kBp}) {
+    EXPECT_EQ(joint.parameters(phase), paper.parameters(phase));
+  }
+  EXPECT_EQ(joint.schedule.mop_commands, "learned");
 }
 
 TEST(Scenarios, TheSmokeTestDiffersInBudgetsOnly) {

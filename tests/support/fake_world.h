@@ -51,6 +51,11 @@ class FakeWorld : public world::World {
     return advance(ego);
   }
 
+  driving::Scene take_over() override {
+    scene_.ego.set_point_mps = scene_.ego.speed_mps;
+    return scene_;
+  }
+
   void end() override {}
 
   int episodes_begun = 0;

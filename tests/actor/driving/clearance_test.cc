@@ -40,6 +40,15 @@ Scene beside(double d_m, double lateral_speed_mps) {
             .lateral_speed_mps = lateral_speed_mps}}};
 }
 
+// Stopped, at the right edge of the ego's lane, its near end 5 m ahead.
+TEST(PredictedClearances, TellWhichMoveGoesAroundAnObjectAtTheLanesEdge) {
+  const Scene scene{ego_in_the_middle(),
+                    {{.id = 1, .s_m = 114.0, .d_m = 3.585, .length_m = 9.0, .width_m = 0.75}}};
+  const std::vector<double> clearances = clearances_m(scene);
+  EXPECT_LT(clearances[at(0, false, 1)], 0.0);
+  EXPECT_NEAR(clearances[at(1, false, 1)], 5.44 - 3.585 - 1.275, 1e-9);
+}
+
 TEST(PredictedClearances, AreAtTheLimitOnAnEmptyRoad) {
   EXPECT_EQ(clearances_m({ego_in_the_middle(), {}}),
             std::vector<double>(kMopMoves * 2, kClearanceMax_m));

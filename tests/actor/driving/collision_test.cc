@@ -26,6 +26,12 @@ TEST(FindCollision, SeesNoneBetweenVehiclesThatTouch) {
   EXPECT_FALSE(collide({.s_m = 100.0, .d_m = beside_m}, {.s_m = 100.0, .d_m = beside_m}));
 }
 
+TEST(FindCollision, SeesAnObjectAtTheLanesEdgeFromTheMiddleAndNotFromTheNextCorridor) {
+  const Vehicle object = {.id = 4, .s_m = 108.0, .d_m = 3.585, .length_m = 9.0, .width_m = 0.75};
+  EXPECT_EQ(collide(object, object), (Collision{CollisionKind::kRearEnding, 4}));
+  EXPECT_FALSE(collide(object, object, 5.44, 5.44));
+}
+
 TEST(FindCollision, SeesRearEndings) {
   const auto hit =
       collide({.id = 4, .s_m = 106.0, .d_m = 5.5}, {.id = 4, .s_m = 104.0, .d_m = 5.5});

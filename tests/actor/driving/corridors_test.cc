@@ -93,6 +93,16 @@ TEST(CorridorGapsOfTheRoad, AreClosedInBothLanesByAVehicleOnTheLine) {
   EXPECT_THAT(occupied({.s_m = 130.0, .d_m = 3.2}), testing::ElementsAre(2, 3, 4, 5, 6, 7));
 }
 
+// Objects of 0.75 m at a hair's breadth from an edge of the middle lane, which is 3.2 m to 6.4 m.
+constexpr Vehicle kAtTheRightEdge = {.s_m = 130.0, .d_m = 3.585, .length_m = 1.6, .width_m = 0.75};
+constexpr Vehicle kAtTheLeftEdge = {.s_m = 130.0, .d_m = 6.015, .length_m = 1.6, .width_m = 0.75};
+
+TEST(CorridorGapsOfTheRoad, LeaveACorridorOpenBesideAnObjectAtTheLanesEdge) {
+  // Of corridors 6, 7 and 8, in which the ego stays within the lane, the furthest.
+  EXPECT_THAT(occupied(kAtTheRightEdge), testing::ElementsAre(3, 4, 5, 6, 7));
+  EXPECT_THAT(occupied(kAtTheLeftEdge), testing::ElementsAre(7, 8, 9, 10, 11));
+}
+
 TEST(CorridorGapsOfTheRoad, AreCutOffAtTheRoadsEdges) {
   EXPECT_THAT(occupied({.s_m = 130.0, .d_m = 0.9}), testing::ElementsAre(0, 1, 2, 3));
   EXPECT_THAT(occupied({.s_m = 130.0, .d_m = 8.7}), testing::ElementsAre(11, 12, 13, 14));
@@ -174,6 +184,15 @@ TEST(LaneGaps, SeeEveryBodyThatOverlapsTheLane) {
   expect_gaps(lane_gaps(scene, 0, kSettings), 20.0, -4.0, 100.0, 0.0);
   expect_gaps(lane_gaps(scene, 1, kSettings), 20.0, -4.0, 100.0, 0.0);
   expect_gaps(lane_gaps(scene, 2, kSettings), 100.0, 0.0, 100.0, 0.0);
+}
+
+TEST(LaneGaps, SeeAnObjectAtALanesEdgeInThatLaneOnly) {
+  for (const Vehicle& object : {kAtTheRightEdge, kAtTheLeftEdge}) {
+    for (int lane = 0; lane < 3; ++lane) {
+      const CorridorGaps gaps = lane_gaps(scene_with(object), lane, kSettings);
+      EXPECT_NEAR(gaps.front_gap_m, lane == 1 ? 28.4 : 100.0, 1e-9) << lane;
+    }
+  }
 }
 
 TEST(LaneGaps, DoNotLookAhead) {

@@ -47,6 +47,19 @@ TEST(Observations, AreAsLongAsTheirShapesSay) {
   EXPECT_EQ(bp_shape(3).observations, 24);
 }
 
+TEST(MopObservation, ShowsTheWayAroundAnObjectAtTheLanesEdge) {
+  const Scene scene{ego_in_the_middle(),
+                    {{.id = 1, .s_m = 134.0, .d_m = 3.585, .length_m = 9.0, .width_m = 0.75}}};
+  const std::vector<float> observation = mop_observation(scene, Command::kKeep);
+  const auto front_gap = [&](int position) {
+    return observation[static_cast<std::size_t>(MopIndex::corridor(position) +
+                                                MopIndex::kFrontGap)];
+  };
+  EXPECT_NEAR(front_gap(1), gap(25.0), 1e-6);
+  EXPECT_NEAR(front_gap(2), gap(25.0), 1e-6);
+  EXPECT_NEAR(front_gap(3), gap(100.0), 1e-6);
+}
+
 // A leader 25 m ahead at 6 m/s, a follower 10 m behind at 20 m/s, both in the lane's middle.
 Scene between_two() {
   Ego ego = ego_in_the_middle();

@@ -11,6 +11,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "actor/driving/bypass.h"
 #include "proto/failure.h"
 #include "proto/hash.h"
 #include "scenarios/sumo_files.h"
@@ -218,6 +219,82 @@ TEST_F(SumoWorldTest, DrivesTheEgoItselfFasterThanItsTrafficAndOverTheLanes) {
   }
   EXPECT_GT(scene.ego.s_m - start_s_m, 300 * 9.0);
   EXPECT_GE(std::count_if(lanes.begin(), lanes.end(), [](int steps) { return steps > 0; }), 2);
+}
+
+class SumoObjects : public SumoWorldTest {
+ protected:
+  SumoObjects() {
+    config_.traffic.objects_per_km = 5.0;
+    config_.traffic.blind_rate_per_s = 0.0;
+    scenarios::write_sumo_files(config_, directory_.path());
+  }
+  bool is_object(const Vehicle& vehicle) const {
+    return vehicle.width_m == config_.traffic.object_width_m;
+  }
+};
+
+TEST_F(SumoObjects, StayAtTheEdgeWhereTheyWerePut) {
+  SumoWorld world = make();
+  Scene scene = world.begin({11, EgoDriver::kWorld, {}});
+  std::map<int, Vehicle> seen;
+  for (int step = 0; step < 300; ++step) {
+    scene = world.step_by_world().scene;
+    for (const Vehicle& vehicle : scene.others) {
+      if (!is_object(vehicle)) continue;
+      const Vehicle& first = seen.try_emplace(vehicle.id, vehicle).first->second;
+      EXPECT_NEAR(vehicle.s_m, first.s_m, 1e-6);
+      EXPECT_NEAR(vehicle.d_m, first.d_m, 1e-6) << step;
+      EXPECT_EQ(vehicle.speed_mps, 0.0);
+      EXPECT_EQ(vehicle.lateral_speed_mps, 0.0);
+    }
+  }
+  EXPECT_GE(seen.size(), 10u);
+}
+
+// SUMO's drivers go around them within the lane, and nobody waits behind them for long.
+TEST_F(SumoObjects, DoNotHoldUpTraffic) {
+  SumoWorld world = make();
+  Scene scene = world.begin({12, EgoDriver::kWorld, {}});
+  int ego_bypasses = 0, drivers = 0, drivers_stopped = 0;
+  for (int step = 0; step < 500; ++step) {
+    const StepResult result = world.step_by_world();
+    EXPECT_FALSE(result.collision) << "step " << step;
+    ego_bypasses += driving::bypasses(scene, result.scene, driving_settings(config_));
+    scene = result.scene;
+    for (const Vehicle& vehicle : scene.others) {
+      if (is_object(vehicle)) continue;
+      ++drivers;
+      drivers_stopped += vehicle.speed_mps < 1.0;
+    }
+  }
+  EXPECT_GE(ego_bypasses, 3);
+  EXPECT_GT(scene.ego.s_m, 500 * 9.0);
+  EXPECT_LT(drivers_stopped, drivers / 100);
+}
+
+TEST_F(SumoObjects, CrawlAtTheSpeedSet) {
+  config_.traffic.object_speed_mps = 2.5;
+  SumoWorld world = make();
+  Scene scene = world.begin({13, EgoDriver::kWorld, {}});
+  std::map<int, Vehicle> before;
+  int steps_seen = 0;
+  double way_m = 0.0;
+  for (int step = 0; step < 200; ++step) {
+    scene = world.step_by_world().scene;
+    for (const Vehicle& vehicle : scene.others) {
+      if (!is_object(vehicle)) continue;
+      const auto [place, is_new] = before.try_emplace(vehicle.id, vehicle);
+      if (!is_new) {
+        EXPECT_LE(vehicle.s_m - place->second.s_m, 2.5 + 1e-6);
+        way_m += vehicle.s_m - place->second.s_m;
+        EXPECT_NEAR(vehicle.d_m, place->second.d_m, 1e-6);
+        ++steps_seen;
+      }
+      place->second = vehicle;
+    }
+  }
+  EXPECT_GT(steps_seen, 50);
+  EXPECT_NEAR(way_m / steps_seen, 2.5, 0.05);  // they brake for whoever cuts in
 }
 
 TEST_F(SumoWorldTest, WritesSumosRecordOfAnEpisode) {

@@ -189,6 +189,107 @@ TEST(Traffic, DrawsKindsAlignmentsAndSpeedFactorsAsSet) {
   EXPECT_NEAR(std::sqrt(squares / cars - mean * mean), 0.146, 0.005);  // the cut takes a little
 }
 
+TrafficScenario with_objects() {
+  TrafficScenario settings = scenario();
+  settings.traffic.objects_per_km = 10.0;
+  settings.traffic.blind_rate_per_s = 0.0;
+  return settings;
+}
+
+// The objects that have come onto the road, as they came, while the ego drove past them.
+std::vector<Entrance> objects_met(Traffic& traffic, int steps, double ego_mps) {
+  Scene scene = start(traffic);
+  std::vector<Entrance> met;
+  for (int step = 0; step < steps; ++step) {
+    scene.ego.s_m += ego_mps;
+    for (Vehicle& vehicle : scene.others) vehicle.s_m += vehicle.speed_mps;
+    const TrafficChange change = traffic.decide(scene);
+    for (const Entrance& entrance : change.entering) {
+      if (entrance.type == kObjectType) met.push_back(entrance);
+    }
+    apply(change, scene);
+  }
+  return met;
+}
+
+TEST(TrafficObjects, StandAtEitherEdgeOfAnyLaneFarEnoughApart) {
+  Traffic traffic(with_objects(), 5);
+  const std::vector<Entrance> met = objects_met(traffic, 2000, 10.0);  // 20 km
+  EXPECT_NEAR(static_cast<double>(met.size()), 200.0, 2.0);
+  std::map<double, int> places;
+  for (std::size_t i = 0; i < met.size(); ++i) {
+    const Vehicle& object = met[i].vehicle;
+    EXPECT_EQ(object.speed_mps, 0.0);
+    EXPECT_EQ(object.width_m, 0.75);
+    EXPECT_EQ(object.length_m, 9.0);
+    if (i > 0) {
+      EXPECT_GE(object.s_m - met[i - 1].vehicle.s_m, kObjectSpacing_m);
+    }
+    const double off_middle_m = object.d_m - (met[i].lane + 0.5) * 3.2;
+    EXPECT_NEAR(std::abs(off_middle_m), 1.6 - 0.01 - 0.375, 1e-9);
+    ++places[std::round(object.d_m * 100.0)];
+  }
+  ASSERT_THAT(places, SizeIs(6));  // three lanes, two edges
+  for (const auto& [place, count] : places) EXPECT_NEAR(count, 33, 5 * std::sqrt(33.0)) << place;
+}
+
+TEST(TrafficObjects, AreAlikeForEveryoneInAnEpisode) {
+  Traffic slow(with_objects(), 5), fast(with_objects(), 5), other(with_objects(), 6);
+  const std::vector<Entrance> met = objects_met(slow, 1000, 7.0);
+  const std::vector<Entrance> again = objects_met(fast, 500, 14.0);
+  const std::vector<Entrance> others = objects_met(other, 500, 14.0);
+  int equal = 0;
+  for (std::size_t i = 0; i < 60; ++i) {
+    EXPECT_EQ(met.at(i).vehicle.d_m, again.at(i).vehicle.d_m);
+    EXPECT_NEAR(met.at(i).vehicle.s_m, again.at(i).vehicle.s_m, 40.0);
+    equal += met.at(i).vehicle.d_m == others.at(i).vehicle.d_m;
+  }
+  EXPECT_LT(equal, 30);
+}
+
+TEST(TrafficObjects, AreNoneOfTheVehiclesAndNobodyTakesTheirPlace) {
+  TrafficScenario settings = with_objects();
+  settings.traffic.vehicles_min = settings.traffic.vehicles_max = 0;
+  Traffic traffic(settings, 5);
+  EXPECT_THAT(traffic.populate(traffic.start()), IsEmpty());
+  Scene scene{traffic.start(), {}};
+  std::size_t most = 0;
+  for (int step = 0; step < 500; ++step) {
+    scene.ego.s_m += 10.0;
+    const TrafficChange change = traffic.decide(scene);
+    for (const Entrance& entrance : change.entering) EXPECT_EQ(entrance.type, kObjectType);
+    apply(change, scene);
+    most = std::max(most, scene.others.size());
+  }
+  EXPECT_GE(most, 2u);
+  EXPECT_LE(most, 4u);  // 10 a km in a window of 250 m
+}
+
+TEST(TrafficObjects, ChangeNoVehiclesDraws) {
+  TrafficScenario none = with_objects();
+  none.traffic.objects_per_km = 0.0;
+  Traffic with(with_objects(), 9), without(none, 9);
+  EXPECT_EQ(start(with).others, start(without).others);
+}
+
+TEST(TrafficObjects, NeverGoBlind) {
+  TrafficScenario settings = with_objects();
+  settings.traffic.vehicles_min = settings.traffic.vehicles_max = 0;
+  settings.traffic.blind_rate_per_s = 1.0;
+  settings.traffic.blind_range_m = 200.0;
+  Traffic traffic(settings, 3);
+  Scene scene{traffic.start(), {}};
+  int beside = 0;
+  for (int step = 0; step < 500; ++step) {
+    scene.ego.s_m += 5.0;
+    const TrafficChange change = traffic.decide(scene);
+    EXPECT_THAT(change.going_blind, IsEmpty());
+    apply(change, scene);
+    beside += !scene.others.empty();
+  }
+  EXPECT_GT(beside, 400);
+}
+
 // A road on which one vehicle stands still relative to the ego.
 Scene with_neighbour(double ahead_m, double d_m) {
   Scene scene;

@@ -1,0 +1,50 @@
+#include "actor/recorded_episode.h"
+
+#include <nlohmann/json.hpp>
+
+#include "proto/failure.h"
+#include "proto/json_numbers.h"
+#include "proto/run_directory.h"
+
+namespace corridor::actor {
+
+RecordedEpisode read_recorded_episode(const RunConfig& config, const std::filesystem::path& file) {
+  const nlohmann::json record = read_json(file);
+  RecordedEpisode recorded;
+  recorded.file = file;
+  try {
+    recorded.start.seed = whole_number<std::uint64_t>(record.at("episode_seed"));
+    if (record.at("driven_by_world").get<bool>()) {
+      recorded.start.driver = world::EgoDriver::kWorld;
+    }
+    recorded.actions = whole_numbers<std::uint8_t>(record.at("actions"));
+    recorded.steps = whole_number<int>(record.at("summary").at("steps"));
+    recorded.trajectory_hash =
+        std::stoull(record.at("trajectory_hash").get<std::string>(), nullptr, 16);
+  } catch (const std::exception& error) {
+    throw Failure("{} is no recorded episode: {}", file.string(), error.what());
+  }
+  if (!recorded.driven_by_world() &&
+      recorded.actions.size() != static_cast<std::size_t>(recorded.steps)) {
+    throw Failure("{} is damaged: {} actions for {} steps", file.string(), recorded.actions.size(),
+                  recorded.steps);
+  }
+  const int mop_actions = config.shape(Phase::kMop).actions;
+  for (const std::uint8_t action : recorded.actions) {
+    if (driving::unpack(action).mop_action >= mop_actions) {
+      throw Failure("{} has an action that this run's planner does not have: it is of another run",
+                    file.string());
+    }
+  }
+  return recorded;
+}
+
+StepOutcome step_as_recorded(Episode& episode, const RecordedEpisode& recorded) {
+  if (recorded.driven_by_world()) return episode.step_by_world();
+  const auto step = static_cast<std::size_t>(episode.summary().steps);
+  CORRIDOR_CHECK(step < recorded.actions.size(), "step {} of {}", step, recorded.actions.size());
+  const driving::StepAction action = driving::unpack(recorded.actions[step]);
+  return episode.step(action.command, action.mop_action);
+}
+
+}  // namespace corridor::actor

@@ -1,0 +1,30 @@
+// An episode as an evaluation recorded it (actor/evaluation.h), and driving it again.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+#include "actor/episode.h"
+#include "actor/world/world.h"
+#include "proto/settings.h"
+
+namespace corridor::actor {
+
+struct RecordedEpisode {
+  std::filesystem::path file;
+  world::EpisodeStart start;
+  std::vector<std::uint8_t> actions;  // one a step; none where the world drives
+  int steps = 0;
+  std::uint64_t trajectory_hash = 0;
+
+  bool driven_by_world() const { return start.driver == world::EgoDriver::kWorld; }
+};
+
+// Throws Failure when the file is no episode, or has actions that this configuration does not.
+RecordedEpisode read_recorded_episode(const RunConfig& config, const std::filesystem::path& file);
+
+// The next step of an episode that has been driven as recorded so far.
+StepOutcome step_as_recorded(Episode& episode, const RecordedEpisode& recorded);
+
+}  // namespace corridor::actor

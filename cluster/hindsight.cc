@@ -1,0 +1,67 @@
+#include "cluster/hindsight.h"
+
+#include <nlohmann/json.hpp>
+
+#include "cluster/evaluation.h"
+#include "cluster/evaluation_result.h"
+#include "cluster/hindsight_result.h"
+#include "cluster/local.h"
+#include "cluster/plan.h"
+#include "cluster/step_progress.h"
+#include "proto/failure.h"
+#include "proto/run_config.h"
+
+namespace corridor::cluster {
+namespace {
+
+EvaluationResult evaluated(const EvaluationJob& job, const RunDirectory& directory) {
+  const std::filesystem::path file = evaluation_file(job, directory);
+  if (!std::filesystem::exists(file)) {
+    throw Failure("{} has not been evaluated with {} on seed {}: corridor evaluate does that",
+                  directory.root().string(), job.planner, job.seed);
+  }
+  return parse_evaluation(read_json(file), file.string());
+}
+
+}  // namespace
+
+int hindsight(const HindsightOptions& options) {
+  const RunDirectory directory = RunDirectory::open(options.run);
+  const RunConfig config = load_run_config(directory.config());
+  const std::vector<EvaluationJob> jobs =
+      chosen_jobs(options.planners, options.seeds, config.evaluation.steps, config);
+  const int parallel = parallel_jobs(options.jobs);
+
+  const HindsightLimits limits{options.actions, options.attempts};
+  std::vector<EvaluationResult> evaluations;
+  std::vector<ProcessPlan> plan;
+  std::vector<StepTask> tasks;
+  for (const EvaluationJob& job : jobs) {
+    evaluations.push_back(evaluated(job, directory));
+    plan.push_back(hindsight_process(job, limits, directory, program_directory()));
+    tasks.push_back({fmt::format("{} {}", job.planner, job.seed), evaluations.back().collisions, 0,
+                     plan.back().log, parse_step_count});
+  }
+  StepProgress progress("hindsight", std::move(tasks), "collisions");
+  const Ending ending = run_queue(plan, parallel, Limits{}, [&] { progress.tick(); });
+  if (ending.signal != 0) {
+    fmt::print("stopped: no table\n");
+    return 128 + ending.signal;
+  }
+
+  std::vector<HindsightResult> results;
+  for (std::size_t i = 0; i < jobs.size(); ++i) {
+    const std::filesystem::path file = hindsight_file(jobs[i], directory);
+    results.push_back(parse_hindsight(read_json(file), file.string()));
+    if (results.back().steps != evaluations[i].steps ||
+        results.back().collisions != evaluations[i].collisions) {
+      throw Failure("{} is not about what {} says now: has it been evaluated meanwhile? Try again",
+                    file.string(), evaluation_file(jobs[i], directory).string());
+    }
+  }
+  fmt::print("\n{}\n\n{}", directory.root().string(), text_of(hindsight_table(results)));
+  fmt::print("\neach collision in {}\n", directory.hindsight().string());
+  return 0;
+}
+
+}  // namespace corridor::cluster
