@@ -193,6 +193,7 @@ TrafficScenario with_objects() {
   TrafficScenario settings = scenario();
   settings.traffic.objects_per_km = 10.0;
   settings.traffic.blind_rate_per_s = 0.0;
+  settings.traffic.vehicles_min = settings.traffic.vehicles_max = 0;
   return settings;
 }
 
@@ -241,15 +242,32 @@ TEST(TrafficObjects, AreAlikeForEveryoneInAnEpisode) {
   int equal = 0;
   for (std::size_t i = 0; i < 60; ++i) {
     EXPECT_EQ(met.at(i).vehicle.d_m, again.at(i).vehicle.d_m);
-    EXPECT_NEAR(met.at(i).vehicle.s_m, again.at(i).vehicle.s_m, 40.0);
+    EXPECT_NEAR(met.at(i).vehicle.s_m, again.at(i).vehicle.s_m, 14.0);
     equal += met.at(i).vehicle.d_m == others.at(i).vehicle.d_m;
   }
   EXPECT_LT(equal, 30);
 }
 
+TEST(TrafficObjects, WaitForRoomInTheirLane) {
+  Traffic traffic(with_objects(), 5);
+  Scene scene{traffic.start(), {}};
+  for (int lane = 0; lane < 3; ++lane) {
+    scene.others.push_back({lane, 0.0, 1.6 + 3.2 * lane, 10.0, 0.0, 5.0, 1.8});
+  }
+  const auto move_to = [&](double behind_the_end_m) {
+    scene.ego.s_m += 10.0;
+    for (Vehicle& vehicle : scene.others) vehicle.s_m = scene.ego.s_m + 125.0 - behind_the_end_m;
+  };
+  for (int step = 0; step < 50; ++step) {
+    move_to(30.0);  // they could not stop
+    EXPECT_THAT(traffic.decide(scene).entering, IsEmpty());
+  }
+  move_to(40.0);
+  EXPECT_THAT(traffic.decide(scene).entering, SizeIs(1));
+}
+
 TEST(TrafficObjects, AreNoneOfTheVehiclesAndNobodyTakesTheirPlace) {
   TrafficScenario settings = with_objects();
-  settings.traffic.vehicles_min = settings.traffic.vehicles_max = 0;
   Traffic traffic(settings, 5);
   EXPECT_THAT(traffic.populate(traffic.start()), IsEmpty());
   Scene scene{traffic.start(), {}};
@@ -266,15 +284,14 @@ TEST(TrafficObjects, AreNoneOfTheVehiclesAndNobodyTakesTheirPlace) {
 }
 
 TEST(TrafficObjects, ChangeNoVehiclesDraws) {
-  TrafficScenario none = with_objects();
-  none.traffic.objects_per_km = 0.0;
-  Traffic with(with_objects(), 9), without(none, 9);
+  TrafficScenario objects = scenario();
+  objects.traffic.objects_per_km = 10.0;
+  Traffic with(objects, 9), without(scenario(), 9);
   EXPECT_EQ(start(with).others, start(without).others);
 }
 
 TEST(TrafficObjects, NeverGoBlind) {
   TrafficScenario settings = with_objects();
-  settings.traffic.vehicles_min = settings.traffic.vehicles_max = 0;
   settings.traffic.blind_rate_per_s = 1.0;
   settings.traffic.blind_range_m = 200.0;
   Traffic traffic(settings, 3);
@@ -288,6 +305,30 @@ TEST(TrafficObjects, NeverGoBlind) {
     beside += !scene.others.empty();
   }
   EXPECT_GT(beside, 400);
+}
+
+TEST(Traffic, LetsNobodyInThatWouldStandBehindAnObject) {
+  TrafficScenario settings = with_objects();
+  settings.road.lanes = 1;
+  settings.traffic.vehicles_min = settings.traffic.vehicles_max = 1;
+  settings.traffic.objects_per_km = 20.0;
+  Traffic traffic(settings, 5);
+  Scene scene = start(traffic);
+  int entered = 0;
+  for (int step = 0; step < 300; ++step) {
+    scene.ego.s_m += 10.0;
+    for (Vehicle& vehicle : scene.others) {
+      if (vehicle.width_m > 1.0) vehicle.s_m += 200.0 * (vehicle.s_m > scene.ego.s_m ? 1 : -1);
+    }
+    const TrafficChange change = traffic.decide(scene);
+    for (const Entrance& entrance : change.entering) {
+      if (entrance.type == kObjectType) continue;
+      EXPECT_GT(entrance.vehicle.speed_mps, 1.0);
+      ++entered;
+    }
+    apply(change, scene);
+  }
+  EXPECT_GT(entered, 10);
 }
 
 // A road on which one vehicle stands still relative to the ego.
