@@ -82,6 +82,7 @@ driving::Scene SumoWorld::begin(const EpisodeStart& start) {
     driver_ = start.driver;
     const auto right_lane = libsumo::Lane::getShape(lane_id(0)).value;
     right_edge_y_m_ = right_lane.front().y - settings_.road.lane_width_m / 2;
+    new_objects_.clear();
     traffic_.emplace(traffic_scenario(), start.seed);
     scene_ = Scene{traffic_->start(), {}};
     add_ego(scene_.ego, start.driver);
@@ -141,6 +142,7 @@ driving::Scene SumoWorld::take_over() {
 
 void SumoWorld::simulate() {
   time_.charge(TimePart::kWorld);
+  put_objects_to_the_edge();
   Sumo::step();
   time_.charge(TimePart::kSimulate);
 }
@@ -148,6 +150,18 @@ void SumoWorld::simulate() {
 void SumoWorld::end() {
   if (!std::exchange(running_, false)) return;
   in_sumo("ending an episode", [] { Sumo::close(); });
+}
+
+// moveToXY, which alone knows of a place across the lane, is carried out at the end of the next
+// step. One that no step follows would stay pending in libsumo, and hit a vehicle of the same id,
+// or freed memory, in the next episode: hence just before the step.
+void SumoWorld::put_objects_to_the_edge() {
+  for (const Vehicle& object : new_objects_) {
+    const double s_m = object.s_m + object.speed_mps * settings_.simulation.step_s;
+    SumoVehicle::moveToXY(sumo_id(object.id), kEdge, -1, s_m, right_edge_y_m_ + object.d_m,
+                          libsumo::INVALID_DOUBLE_VALUE, kKeepExactPosition);
+  }
+  new_objects_.clear();
 }
 
 StepResult SumoWorld::finish_step(const driving::Ego& ego_after) {
@@ -201,12 +215,8 @@ void SumoWorld::add(const Entrance& entrance) {
   SumoVehicle::moveTo(id, lane_id(entrance.lane), entrance.vehicle.s_m);
   SumoVehicle::setPreviousSpeed(id, entrance.vehicle.speed_mps);
   if (entrance.type == kObjectType) {
-    // moveToXY, which alone knows of a place across the lane, acts after the next step's movement.
-    const double s_m =
-        entrance.vehicle.s_m + entrance.vehicle.speed_mps * settings_.simulation.step_s;
-    SumoVehicle::moveToXY(id, kEdge, -1, s_m, right_edge_y_m_ + entrance.vehicle.d_m,
-                          libsumo::INVALID_DOUBLE_VALUE, kKeepExactPosition);
     SumoVehicle::setLaneChangeMode(id, kNoLaneChanges);
+    new_objects_.push_back(entrance.vehicle);
   }
   const auto place =
       std::lower_bound(scene_.others.begin(), scene_.others.end(), entrance.vehicle.id,

@@ -56,6 +56,7 @@ class SumoWorld : public World {
   void add(const Entrance& entrance);
   void apply(const TrafficChange& change);
   void read_others();
+  void put_objects_to_the_edge();
   void simulate();
   StepResult finish_step(const driving::Ego& ego_after);
 
@@ -70,6 +71,7 @@ class SumoWorld : public World {
   double right_edge_y_m_ = 0.0;  // SUMO's y of the road's right edge; d = y - this
   std::optional<Traffic> traffic_;
   driving::Scene scene_;
+  std::vector<driving::Vehicle> new_objects_;  // since the last step
 };
 
 }  // namespace corridor::world

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -249,6 +250,18 @@ TEST_F(SumoObjects, StayAtTheEdgeWhereTheyWerePut) {
     }
   }
   EXPECT_GE(seen.size(), 10u);
+}
+
+TEST_F(SumoObjects, LeaveNothingToTheNextEpisodeWhenOneEndsAsTheyCome) {
+  SumoWorld world = make();
+  const std::uint64_t hash = drive(world, 20, EgoDriver::kPlanner, 200);
+  for (std::uint64_t seed = 30; seed < 50; ++seed) {
+    Scene scene = world.begin({seed, EgoDriver::kWorld, {}});
+    while (std::ranges::none_of(scene.others, [&](const Vehicle& v) { return is_object(v); })) {
+      scene = world.step_by_world().scene;
+    }
+    EXPECT_EQ(drive(world, 20, EgoDriver::kPlanner, 200), hash) << "after seed " << seed;
+  }
 }
 
 // SUMO's drivers go around them within the lane, and nobody waits behind them for long.
