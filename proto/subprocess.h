@@ -1,0 +1,31 @@
+// A program that somebody else wrote, run to its end: netconvert, gnuplot.
+#pragma once
+
+#include <chrono>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace corridor {
+
+// The executable of that name in the first of `folders` and those of PATH that has it.
+std::optional<std::filesystem::path> find_program(const std::string& name,
+                                                  std::vector<std::filesystem::path> folders = {});
+
+struct SubprocessResult {
+  int status = 0;      // as a shell says: 128 + signal when one ended it
+  std::string output;  // standard output and standard error, each cut off at 64 MiB
+  std::string errors;
+  bool operator==(const SubprocessResult&) const = default;
+};
+
+// Runs `program` with `input` as its standard input until it has closed both outputs; one that then
+// lives on for a second is killed. Returns nothing when it has not closed them by the deadline; it
+// is killed then, too. Throws Failure when it cannot be started.
+std::optional<SubprocessResult> run_subprocess(const std::filesystem::path& program,
+                                               const std::vector<std::string>& arguments,
+                                               const std::string& input,
+                                               std::chrono::milliseconds patience);
+
+}  // namespace corridor
