@@ -54,7 +54,7 @@ StepOutcome Episode::step_by_world() { return advance(world_.step_by_world()); }
 void Episode::take_over() { situation_.scene = world_.take_over(); }
 
 StepOutcome Episode::advance(const world::StepResult& result) {
-  const driving::Scene scene_before = situation_.scene;
+  const driving::Scene scene_before = std::move(situation_.scene);
   const driving::Ego& before = scene_before.ego;
   const int lane_before = lanes_.lane_at(before.d_m);
   see(result.scene);

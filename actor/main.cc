@@ -2,6 +2,7 @@
 // drives a recorded episode again, or looks back on an evaluation's collisions.
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <optional>
 #include <string>
 
 #include "actor/evaluation.h"
@@ -38,18 +39,17 @@ int evaluate(const Arguments& arguments, const RunConfig& config, const RunDirec
                                    arguments.steps, arguments.fcd};
   const RunDirectory trained =
       arguments.networks.empty() ? directory : RunDirectory::open(arguments.networks);
-  const auto networks = newest_networks(trained, config);
-  if (!networks && task.pair.learned()) {
+  std::optional<Networks> networks = Networks{};
+  if (task.pair.learned()) networks = newest_networks(trained, config);
+  if (!networks) {
     throw Failure("{} has no checkpoint yet: train on, or evaluate another run",
                   trained.root().string());
   }
-  actor::evaluate(config, networks.value_or(Networks{}), task, directory, world,
-                  [&](std::int64_t steps) {
-                    std::printf("%lld/%lld\n", static_cast<long long>(steps),
-                                static_cast<long long>(task.steps));
-                    std::fflush(stdout);
-                    return !stop_requested();
-                  });
+  actor::evaluate(config, *networks, task, directory, world, [&](std::int64_t steps) {
+    std::printf("%lld/%lld\n", static_cast<long long>(steps), static_cast<long long>(task.steps));
+    std::fflush(stdout);
+    return !stop_requested();
+  });
   return 0;
 }
 

@@ -81,7 +81,7 @@ class PhaseRollout {
 
   std::optional<policy::ActionValues> mop_;
   std::optional<policy::ActionValues> bp_;
-  std::vector<float> observation_;      // of the planner in training
+  std::vector<float> observation_;        // of the planner in training
   std::vector<float> other_observation_;  // of the planner that is not
   RolloutTotals totals_;
   TimeAccount& time_;

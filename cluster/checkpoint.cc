@@ -61,6 +61,11 @@ std::optional<Checkpoint> newest_checkpoint(const RunDirectory& directory) {
   return Checkpoint{*found, checkpoint_round(*found) + 1};
 }
 
+std::uint64_t rounds_done(const RunDirectory& directory) {
+  const std::optional<Checkpoint> checkpoint = newest_checkpoint(directory);
+  return checkpoint ? checkpoint->rounds_done : 0;
+}
+
 std::string fingerprint(const TensorFile& learner, const TensorFile& replay) {
   Hash hash;
   add(hash, learner);

@@ -18,6 +18,8 @@ struct Checkpoint {
 
 // Nothing when there is none yet.
 std::optional<Checkpoint> newest_checkpoint(const RunDirectory& directory);
+// In it; 0 when there is none yet.
+std::uint64_t rounds_done(const RunDirectory& directory);
 
 // Hash, in hex, over what a checkpoint holds: both networks, the optimiser's state, the replay's
 // rows and priorities. Of every tensor its name, type, shape and values count, and the metadata;

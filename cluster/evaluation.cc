@@ -6,7 +6,6 @@
 #include <cerrno>
 #include <cstring>
 #include <nlohmann/json.hpp>
-#include <thread>
 
 #include "cluster/checkpoint.h"
 #include "cluster/evaluation_result.h"
@@ -40,16 +39,6 @@ void check_can_write(const std::filesystem::path& file) {
   }
 }
 
-// What an exported run lacks.
-void complete(const RunDirectory& directory, const RunConfig& config) {
-  for (const auto& folder : {directory.log("").parent_path(), directory.episodes()}) {
-    on_disk("create", folder, [&] { std::filesystem::create_directories(folder); });
-  }
-  if (!std::filesystem::exists(directory.network())) {
-    scenarios::write_sumo_files(config, directory.network().parent_path());
-  }
-}
-
 }  // namespace
 
 std::vector<EvaluationJob> chosen_jobs(std::vector<std::string> planners,
@@ -68,8 +57,7 @@ std::vector<EvaluationJob> chosen_jobs(std::vector<std::string> planners,
 }
 
 int parallel_jobs(std::optional<int> jobs) {
-  const int parallel =
-      jobs.value_or(std::max(1, static_cast<int>(std::thread::hardware_concurrency())));
+  const int parallel = jobs.value_or(available_cores());
   if (parallel < 1) throw Failure("--jobs {}: at least 1 is needed", parallel);
   return parallel;
 }
@@ -140,7 +128,9 @@ int evaluate(const EvaluateOptions& options) {
   for (const EvaluationJob& job : jobs) check_can_drive(job.planner, trained, config);
   const int parallel = parallel_jobs(options.jobs);
   if (!options.json.empty()) check_can_write(options.json);
-  complete(directory, config);
+  if (!std::filesystem::exists(directory.network())) {  // of an exported run
+    scenarios::write_sumo_files(config, directory.network().parent_path());
+  }
 
   std::vector<ProcessPlan> plan;
   std::vector<StepTask> tasks;
@@ -159,8 +149,7 @@ int evaluate(const EvaluateOptions& options) {
   std::vector<EvaluationResult> results;
   std::vector<SeedResult> of_this_run;
   for (const EvaluationJob& job : jobs) {
-    const std::filesystem::path file = evaluation_file(job, directory);
-    results.push_back(parse_evaluation(read_json(file), file.string()));
+    results.push_back(read_evaluation(evaluation_file(job, directory)));
     of_this_run.push_back({config.run.seed, results.back()});
   }
   fmt::print("\n{}: {} steps for each planner and seed\n", directory.root().string(),

@@ -5,6 +5,7 @@
 #include "proto/failure.h"
 #include "proto/json_numbers.h"
 #include "proto/planner_pairs.h"
+#include "proto/run_directory.h"
 
 namespace corridor::cluster {
 namespace {
@@ -72,6 +73,10 @@ EvaluationResult parse_evaluation(const json& json, const std::string& name) {
   }
   if (result.per_episode.empty()) throw Failure("{} is no evaluation: it has no episodes", name);
   return result;
+}
+
+EvaluationResult read_evaluation(const std::filesystem::path& file) {
+  return parse_evaluation(read_json(file), file.string());
 }
 
 nlohmann::ordered_json evaluation_json(const std::vector<EvaluationResult>& results) {

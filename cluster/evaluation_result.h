@@ -1,8 +1,9 @@
-// What corridor-actor wrote about its greedy episodes, as values; the JSON for others. Pure.
+// What corridor-actor wrote about its greedy episodes, as values; the JSON for others.
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <filesystem>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
@@ -46,6 +47,7 @@ struct EvaluationResult {
 // Throws Failure naming `name` (the file) when a field is missing or wrong, when there is no such
 // planner pair, or no episode.
 EvaluationResult parse_evaluation(const nlohmann::json& json, const std::string& name);
+EvaluationResult read_evaluation(const std::filesystem::path& file);
 
 // A list with one object a result: all fields but the episodes.
 nlohmann::ordered_json evaluation_json(const std::vector<EvaluationResult>& results);

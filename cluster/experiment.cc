@@ -32,18 +32,22 @@ constexpr int kCoresPerTraining = 2;
 struct Run {
   const TrainingArm* training = nullptr;
   std::uint64_t seed = 0;
-  bool first = false;  // of the training's seeds
   fs::path root;
   RunConfig config;
 
   std::string name() const { return fmt::format("{}-{}", training->name, seed); }
+  bool is_first() const { return seed == training->training_seeds.front(); }
+  bool has_begun() const { return fs::exists(root / "manifest.json"); }
 };
 
 // One evaluation of one run's networks in one scenario.
 struct Evaluation {
   const Run* run = nullptr;
   fs::path scenario;
+  RunDirectory place;  // of that scenario
   EvaluationJob job;
+
+  fs::path file() const { return evaluation_file(job, place); }
 };
 
 std::vector<Run> runs_of(const Experiment& experiment, const fs::path& directory) {
@@ -52,11 +56,7 @@ std::vector<Run> runs_of(const Experiment& experiment, const fs::path& directory
     for (const std::uint64_t seed : training.training_seeds) {
       std::vector<std::string> settings = training.settings;
       settings.push_back(fmt::format("run.seed={}", seed));
-      Run run{&training,
-              seed,
-              seed == training.training_seeds.front(),
-              {},
-              load_run_config(training.scenario, settings)};
+      Run run{&training, seed, {}, load_run_config(training.scenario, settings)};
       run.root = directory / "runs" / run.name();
       runs.push_back(std::move(run));
     }
@@ -64,14 +64,17 @@ std::vector<Run> runs_of(const Experiment& experiment, const fs::path& directory
   return runs;
 }
 
+// Of runs that have been trained.
 std::vector<Evaluation> evaluations_of(const Experiment& experiment, const std::vector<Run>& runs) {
   std::vector<Evaluation> evaluations;
   for (const Run& run : runs) {
     for (const fs::path& scenario : run.training->evaluate_in) {
+      const RunDirectory place = scenario_directory(RunDirectory::open(run.root), scenario);
       for (const std::string& planner : run.training->planners) {
-        if (!planner_pair(planner).learned() && !run.first) continue;
+        if (!planner_pair(planner).learned() && !run.is_first()) continue;
         for (const std::uint64_t seed : experiment.evaluation_seeds) {
-          evaluations.push_back({&run, scenario, {planner, seed, experiment.evaluation_steps}});
+          evaluations.push_back(
+              {&run, scenario, place, {planner, seed, experiment.evaluation_steps}});
         }
       }
     }
@@ -104,16 +107,10 @@ void check_same_settings(const Run& run) {
   }
 }
 
-std::uint64_t rounds_done(const Run& run) {
-  if (!fs::exists(run.root / "manifest.json")) return 0;
-  const auto checkpoint = newest_checkpoint(RunDirectory::open(run.root));
-  return checkpoint ? checkpoint->rounds_done : 0;
-}
-
 ProcessPlan training_process(const Run& run, const fs::path& log) {
   const std::string program = program_directory() / "corridor";
   ProcessPlan plan{run.name(), {program, "resume", run.root.string()}, log};
-  if (fs::exists(run.root / "manifest.json")) return plan;
+  if (run.has_begun()) return plan;
   // Whoever began it was killed before it was a run.
   on_disk("remove", run.root, [&] { fs::remove_all(run.root); });
   plan.argv = {program,           "train",  run.training->scenario.string(), "--run",
@@ -134,12 +131,12 @@ int train_all(const std::vector<Run>& runs, const fs::path& directory, int cores
   std::vector<ProcessPlan> later;  // those that begin with what is trained first
   std::vector<StepTask> tasks;
   for (const Run& run : runs) {
-    if (fs::exists(run.root / "manifest.json")) check_same_settings(run);
+    if (run.has_begun()) check_same_settings(run);
     const Schedule schedule(run.config);
     const auto steps = [per_round = schedule.steps_per_round()](std::uint64_t rounds) {
       return static_cast<std::int64_t>(rounds) * per_round;
     };
-    const std::uint64_t done = rounds_done(run);
+    const std::uint64_t done = run.has_begun() ? rounds_done(RunDirectory::open(run.root)) : 0;
     tasks.push_back({run.name(), steps(schedule.rounds()), steps(done),
                      run.root / "metrics" / "learner.jsonl", [steps](std::string_view text) {
                        const auto line = parse_metrics_line(text);
@@ -161,23 +158,25 @@ int train_all(const std::vector<Run>& runs, const fs::path& directory, int cores
   return 0;
 }
 
-bool is_done(const fs::path& file, const EvaluationJob& job) {
-  return fs::exists(file) && parse_evaluation(read_json(file), file.string()).steps == job.steps;
+bool is_done(const Evaluation& evaluation) {
+  const fs::path file = evaluation.file();
+  return fs::exists(file) && read_evaluation(file).steps == evaluation.job.steps;
 }
 
 int evaluate_all(const std::vector<Evaluation>& evaluations, const fs::path& directory, int cores) {
   std::vector<ProcessPlan> plan;
   std::vector<StepTask> tasks;
-  for (const auto& [run, scenario, job] : evaluations) {
-    const RunDirectory trained = RunDirectory::open(run->root);
-    const RunDirectory place = scenario_directory(trained, scenario);
+  for (const Evaluation& evaluation : evaluations) {
+    const EvaluationJob& job = evaluation.job;
     const std::string name =
-        fmt::format("{}-{}-{}-{}", run->name(), scenario.stem().string(), job.planner, job.seed);
+        fmt::format("{}-{}-{}-{}", evaluation.run->name(), evaluation.scenario.stem().string(),
+                    job.planner, job.seed);
     const fs::path log = directory / "log" / (name + ".log");
-    const bool done = is_done(evaluation_file(job, place), job);
+    const bool done = is_done(evaluation);
     tasks.push_back({name, job.steps, done ? job.steps : 0, log, parse_step_count});
     if (done) continue;
-    ProcessPlan process = evaluation_process(job, place, trained, program_directory(), {});
+    ProcessPlan process = evaluation_process(
+        job, evaluation.place, RunDirectory::open(evaluation.run->root), program_directory(), {});
     process.name = name;
     process.log = log;
     plan.push_back(std::move(process));
@@ -192,9 +191,7 @@ std::vector<SeedResult> results_in(const std::vector<Evaluation>& evaluations,
   std::vector<SeedResult> results;
   for (const Evaluation& evaluation : evaluations) {
     if (evaluation.run->training != &training || evaluation.scenario != scenario) continue;
-    const fs::path file = evaluation_file(
-        evaluation.job, scenario_directory(RunDirectory::open(evaluation.run->root), scenario));
-    results.push_back({evaluation.run->seed, parse_evaluation(read_json(file), file.string())});
+    results.push_back({evaluation.run->seed, read_evaluation(evaluation.file())});
   }
   return results;
 }
@@ -248,14 +245,16 @@ void write_results(const Experiment& experiment, const std::vector<Run>& runs,
 
 int experiment(const ExperimentOptions& options, const std::string& program) {
   const Experiment experiment = load_experiment(options.file);
-  const int cores = options.jobs.value_or(available_cores());
-  if (cores < 1) throw Failure("--jobs {}: at least 1 is needed", cores);
+  const int cores = parallel_jobs(options.jobs);
   claim(options.directory, options.file);
   const std::vector<Run> runs = runs_of(experiment, options.directory);
-  const std::vector<Evaluation> evaluations = evaluations_of(experiment, runs);
 
   int signal = train_all(runs, options.directory, cores);
-  if (signal == 0) signal = evaluate_all(evaluations, options.directory, cores);
+  std::vector<Evaluation> evaluations;
+  if (signal == 0) {
+    evaluations = evaluations_of(experiment, runs);
+    signal = evaluate_all(evaluations, options.directory, cores);
+  }
   if (signal != 0) {
     fmt::print("stopped; go on with the same command: {} experiment {} --run {}\n", program,
                options.file.string(), options.directory.string());

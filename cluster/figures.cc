@@ -6,6 +6,8 @@
 #include <array>
 #include <set>
 
+#include "cluster/text.h"
+
 namespace corridor::cluster {
 namespace {
 
@@ -111,10 +113,8 @@ std::vector<Plot> plots_of(const Figure& figure, const Panel& panel, std::size_t
   return plots;
 }
 
-std::string joined(const std::vector<std::string>& items) {
-  std::string text;
-  for (const std::string& item : items) text += (text.empty() ? "plot " : ", \\\n  ") + item;
-  return text + "\n";
+std::string plot_command(const std::vector<std::string>& items) {
+  return fmt::format("plot {}\n", listed(items, ", \\\n  "));
 }
 
 std::string panel_script(const Figure& figure, std::size_t number) {
@@ -125,7 +125,7 @@ std::string panel_script(const Figure& figure, std::size_t number) {
   }
   return fmt::format("set title {} textcolor rgb '#{}'\n", quoted(panel.title), kInk) +
          fmt::format("set ylabel {} textcolor rgb '#{}' offset 0.5,0\n", quoted(panel.unit), kInk) +
-         joined(items);
+         plot_command(items);
 }
 
 // A plot of nothing over the whole width: a panel's own legend would be as wide as the panel. What
@@ -147,7 +147,7 @@ std::string legend_script(const Figure& figure) {
          fmt::format(
              "set key center center horizontal Left reverse samplen 2.5 textcolor rgb '#{}'\n",
              kInk) +
-         joined(items);
+         plot_command(items);
 }
 
 }  // namespace

@@ -20,7 +20,7 @@ EvaluationResult evaluated(const EvaluationJob& job, const RunDirectory& directo
     throw Failure("{} has not been evaluated with {} on seed {}: corridor evaluate does that",
                   directory.root().string(), job.planner, job.seed);
   }
-  return parse_evaluation(read_json(file), file.string());
+  return read_evaluation(file);
 }
 
 }  // namespace

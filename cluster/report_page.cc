@@ -44,7 +44,7 @@ Table runs_table(const std::vector<RunGroup>& groups) {
   return table;
 }
 
-// One line a run that was made otherwise than the first: seeds differ, versions seldom.
+// One column a run.
 Table making_table(const std::vector<RunGroup>& groups) {
   Table table{"Made with", {""}, {}};
   std::vector<const RunRecord*> runs;
@@ -99,11 +99,6 @@ std::string shell_word(const std::string& text) {
   return word + "'";
 }
 
-void append(std::string& list, const std::string& item) {
-  if (!list.empty()) list += ',';
-  list += item;
-}
-
 // One command for all planners of equal steps and seeds.
 std::string evaluate_commands(const std::vector<EvaluationResult>& results, const std::string& run,
                               const std::string& scenario) {
@@ -111,22 +106,20 @@ std::string evaluate_commands(const std::vector<EvaluationResult>& results, cons
   for (const EvaluationResult& result : results) {
     seeds[result.planner][result.steps].push_back(result.seed);
   }
-  std::map<std::pair<std::int64_t, std::vector<std::uint64_t>>, std::string> planners;
+  std::map<std::pair<std::int64_t, std::vector<std::uint64_t>>, std::vector<std::string>> planners;
   for (auto& [planner, of_steps] : seeds) {
     for (auto& [steps, of_planner] : of_steps) {
       std::ranges::sort(of_planner);
-      append(planners[{steps, of_planner}], planner);
+      planners[{steps, of_planner}].push_back(planner);
     }
   }
   std::string text;
-  for (const auto& [key, list] : planners) {
+  for (const auto& [key, names] : planners) {
     const auto& [steps, of_planners] = key;
-    std::string seed_list;
-    for (const std::uint64_t seed : of_planners) {
-      append(seed_list, std::to_string(seed));
-    }
+    std::vector<std::string> seed_texts;
+    for (const std::uint64_t seed : of_planners) seed_texts.push_back(std::to_string(seed));
     text += fmt::format("corridor evaluate {}{} --planners {} --seeds {} --steps {}\n", run,
-                        scenario, list, seed_list, steps);
+                        scenario, listed(names, ","), listed(seed_texts, ","), steps);
   }
   return text;
 }
@@ -167,11 +160,9 @@ std::string repeating_commands(const RunRecord& run) {
 
 std::string report_page(const std::vector<RunGroup>& groups,
                         const std::vector<DrawnFigure>& figures) {
-  std::string title = "corridor:", body;
-  for (const RunGroup& group : groups) {
-    title += (group.label == groups.front().label ? " " : ", ") + group.label;
-  }
-  body += html_of(runs_table(groups));
+  std::vector<std::string> labels;
+  for (const RunGroup& group : groups) labels.push_back(group.label);
+  std::string body = html_of(runs_table(groups));
 
   body += html_heading(2, "Training");
   for (const DrawnFigure& drawn : figures) body += html_figure(drawn.svg, drawn.figure.caption);
@@ -206,7 +197,7 @@ std::string report_page(const std::vector<RunGroup>& groups,
       body += html_heading(3, group.label + " differs in") + html_preformatted(differs);
     }
   }
-  return html_document(title, body);
+  return html_document("corridor: " + listed(labels), body);
 }
 
 }  // namespace corridor::cluster

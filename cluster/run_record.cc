@@ -41,8 +41,7 @@ std::vector<EvaluationResult> read_evaluations(const std::filesystem::path& fold
   }
   std::sort(files.begin(), files.end());
   std::vector<EvaluationResult> results;
-  for (const auto& file : files)
-    results.push_back(parse_evaluation(read_json(file), file.string()));
+  for (const auto& file : files) results.push_back(read_evaluation(file));
   return results;
 }
 

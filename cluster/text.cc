@@ -23,10 +23,10 @@ std::string duration_text(double seconds) {
   return fmt::format("{} h {:02d} min", whole / 3600, whole / 60 % 60);
 }
 
-std::string listed(const std::vector<std::string>& texts) {
+std::string listed(const std::vector<std::string>& texts, std::string_view separator) {
   std::string list;
   for (const std::string& text : texts) {
-    if (!list.empty()) list += ", ";
+    if (&text != &texts.front()) list += separator;
     list += text;
   }
   return list;

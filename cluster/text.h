@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace corridor::cluster {
@@ -14,6 +15,6 @@ std::string grouped(std::int64_t number);
 std::string duration_text(double seconds);
 
 // "a, b, c".
-std::string listed(const std::vector<std::string>& texts);
+std::string listed(const std::vector<std::string>& texts, std::string_view separator = ", ");
 
 }  // namespace corridor::cluster

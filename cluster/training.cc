@@ -158,11 +158,6 @@ void print_what_comes_next(const RunDirectory& directory, const std::string& pro
       run, program);
 }
 
-std::uint64_t rounds_done(const RunDirectory& directory) {
-  const std::optional<Checkpoint> checkpoint = newest_checkpoint(directory);
-  return checkpoint ? checkpoint->rounds_done : 0;
-}
-
 // What nobody alive is writing any more; a line for each damaged checkpoint.
 std::vector<std::string> clean_up(const RunDirectory& directory) {
   directory.remove_leftovers();
@@ -233,8 +228,7 @@ std::optional<Networks> networks_to_begin_with(const std::filesystem::path& from
     if (config.schedule.mop_commands == "random") return std::nullopt;
     throw Failure(
         "schedule.mop_commands = \"learned\": there is no learned BP yet; begin with the networks "
-        "of "
-        "a run, as in --from runs/paper");
+        "of a run, as in --from runs/paper");
   }
   const auto networks = newest_networks(RunDirectory::open(from), config);
   if (!networks) throw Failure("{} has no networks yet: train it first", from.string());

@@ -13,16 +13,19 @@ namespace {
 constexpr int kWindowsPerTraining = 25;
 
 struct Quantity {
-  const char* title;   // of the panel, behind the phase
-  const char* unit;    // of the y axis
-  const char* name;    // of the number in the metrics
-  const char* weight;  // likewise; may be empty
+  const char* title;               // of the panel, behind the phase
+  const char* unit;                // of the y axis
+  const char* name;                // of the number in the metrics
+  const char* weight;              // likewise; may be empty
+  double Level::*level = nullptr;  // what the rules come to; of some quantities
 };
-constexpr Quantity kReward = {"reward", "reward per 1000 steps", "charts/reward_per_1000", ""};
+constexpr Quantity kReward = {"reward", "reward per 1000 steps", "charts/reward_per_1000", "",
+                              &Level::reward_per_1000};
 constexpr Quantity kCollisions = {"collisions", "collisions per 1000 steps",
-                                  "charts/collisions_per_1000", ""};
+                                  "charts/collisions_per_1000", "", &Level::collisions_per_1000};
 constexpr Quantity kEpisode = {"reward of an episode", "reward per episode",
-                               "charts/episodic_return", "charts/episodes"};
+                               "charts/episodic_return", "charts/episodes",
+                               &Level::reward_per_episode};
 constexpr Quantity kLoss = {"loss", "Huber loss of TD errors", "losses/td_loss", ""};
 constexpr Quantity kQ = {"Q-value", "scaled return", "losses/q_values", ""};
 constexpr Quantity kRisk = {"risk", "discounted collisions", "losses/risk_values", ""};
@@ -31,10 +34,6 @@ constexpr Quantity kGreedyReward = {"reward, greedy", "reward per 1000 steps",
 constexpr Quantity kGreedyCollisions = {"collisions, greedy", "collisions per 1000 steps",
                                         "eval/collisions_per_1000", ""};
 constexpr Quantity kScore = {"score", "reward - cost of collisions", "eval/score", ""};
-
-std::string panel_title(Phase phase, const Quantity& quantity) {
-  return fmt::format("{} {}", phase_name(phase), quantity.title);
-}
 
 using Processes = std::vector<ProcessMetrics> RunRecord::*;
 
@@ -70,22 +69,6 @@ PlottedCurve plotted(const RunGroup& group, Processes processes, Phase phase,
   return curve;
 }
 
-// Panels without any curve are left out.
-std::vector<Panel> panels_of(const std::vector<RunGroup>& groups, Processes processes, Phase phase,
-                             const std::vector<Quantity>& quantities, bool averaged) {
-  std::vector<Panel> panels;
-  for (const Quantity& quantity : quantities) {
-    Panel panel{panel_title(phase, quantity), quantity.unit, {}};
-    for (const RunGroup& group : groups) {
-      panel.curves.push_back(plotted(group, processes, phase, quantity, averaged));
-    }
-    if (std::ranges::any_of(panel.curves, [](const auto& curve) { return !curve.trend.empty(); })) {
-      panels.push_back(std::move(panel));
-    }
-  }
-  return panels;
-}
-
 std::optional<Level> rules_level(const RunGroup& group, Phase phase) {
   std::vector<EvaluationResult> results;
   for (const RunRecord& run : group.runs) {
@@ -98,19 +81,24 @@ std::optional<Level> rules_level(const RunGroup& group, Phase phase) {
                   group.runs.front().config.simulation.episode_steps);
 }
 
-void add_levels(std::vector<Panel>& panels, const std::vector<RunGroup>& groups, Phase phase) {
-  for (std::size_t i = 0; i < groups.size(); ++i) {
-    const std::optional<Level> level = rules_level(groups[i], phase);
-    if (!level) continue;
-    for (Panel& panel : panels) {
-      if (panel.title == panel_title(phase, kReward))
-        panel.curves[i].level = level->reward_per_1000;
-      if (panel.title == panel_title(phase, kCollisions))
-        panel.curves[i].level = level->collisions_per_1000;
-      if (panel.title == panel_title(phase, kEpisode))
-        panel.curves[i].level = level->reward_per_episode;
+// Panels without any curve are left out.
+std::vector<Panel> panels_of(const std::vector<RunGroup>& groups, Processes processes, Phase phase,
+                             const std::vector<Quantity>& quantities, bool averaged) {
+  std::vector<Panel> panels;
+  for (const Quantity& quantity : quantities) {
+    Panel panel{fmt::format("{} {}", phase_name(phase), quantity.title), quantity.unit, {}};
+    for (const RunGroup& group : groups) {
+      panel.curves.push_back(plotted(group, processes, phase, quantity, averaged));
+      if (quantity.level == nullptr) continue;
+      if (const auto level = rules_level(group, phase)) {
+        panel.curves.back().level = (*level).*quantity.level;
+      }
+    }
+    if (std::ranges::any_of(panel.curves, [](const auto& curve) { return !curve.trend.empty(); })) {
+      panels.push_back(std::move(panel));
     }
   }
+  return panels;
 }
 
 std::string seeds_text(const std::vector<RunGroup>& groups) {
@@ -126,13 +114,12 @@ std::string seeds_text(const std::vector<RunGroup>& groups) {
 }
 
 std::string window_text(const std::vector<RunGroup>& groups) {
-  std::string windows;
+  std::vector<std::string> windows;
   for (const RunGroup& group : groups) {
-    if (!windows.empty()) windows += ", ";
-    windows += grouped(window_steps(group)) + " steps";
-    if (groups.size() > 1) windows += " (" + group.label + ")";
+    windows.push_back(grouped(window_steps(group)) + " steps");
+    if (groups.size() > 1) windows.back() += " (" + group.label + ")";
   }
-  return fmt::format("Thick: moving average over {}.", windows);
+  return fmt::format("Thick: moving average over {}.", listed(windows));
 }
 
 void add_figures(std::vector<Figure>& figures, const std::vector<RunGroup>& groups, Phase phase) {
@@ -147,14 +134,12 @@ void add_figures(std::vector<Figure>& figures, const std::vector<RunGroup>& grou
                        "rules", points, std::move(panels)});
   };
 
-  auto training =
-      panels_of(groups, &RunRecord::actors, phase, {kReward, kCollisions, kEpisode}, true);
-  add_levels(training, groups, phase);
   add("training",
       fmt::format("Training of the {}: its reward and the collisions while exploring. {} Dashed: "
                   "the rules on held-out traffic{}.",
                   planner, window_text(groups), mop ? ", under the same random BP" : ""),
-      "moving average", false, std::move(training));
+      "moving average", false,
+      panels_of(groups, &RunRecord::actors, phase, {kReward, kCollisions, kEpisode}, true));
   add("learning",
       fmt::format("What the learner of the {} says of its batches. {}", planner,
                   window_text(groups)),

@@ -36,7 +36,8 @@ struct LearnerState {
 
 Phase phase_in_progress(const Schedule& schedule, std::uint64_t next_round);
 
-// Those that a user should drive with now: of the phase in progress the best so far, else the newest.
+// Those that a user should drive with now: of the phase in progress the best so far, else the
+// newest.
 Networks networks_to_use(const LearnerState& state, Phase phase);
 
 // Tensors "mop" and "bp": networks_to_use; metadata "mop.shape" and "bp.shape": their NetworkShape

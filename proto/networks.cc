@@ -41,10 +41,7 @@ void write_networks(const RunDirectory& directory, const Networks& networks) {
 }
 
 std::optional<Networks> newest_networks(const RunDirectory& directory, const RunConfig& config) {
-  // A run that was exported has no directory for them.
-  const auto checkpoint = std::filesystem::exists(directory.checkpoints())
-                              ? Checkpoints(directory.checkpoints()).newest()
-                              : std::nullopt;
+  const auto checkpoint = Checkpoints(directory.checkpoints()).newest();
   if (!checkpoint) return given_networks(directory, config);
   return networks_in(read_checkpoint_file(*checkpoint, kCheckpointFile), config,
                      (*checkpoint / kCheckpointFile).string());

@@ -1,6 +1,6 @@
 // The pairs of planners that can be evaluated, in the order of a table's rows: those of the paper's
-// Table I, the naive ones that a table must be read against, and those under the BP of MoP training.
-// What the command may ask an actor for.
+// Table I, the naive ones that a table must be read against, and those under the BP of MoP
+// training. What the command may ask an actor for.
 #pragma once
 
 #include <string_view>

@@ -23,8 +23,8 @@ RunConfig load_run_config(const std::filesystem::path& file,
 RunConfig parse_run_config(const std::string& text, const std::string& name,
                            const std::vector<std::string>& overrides = {});
 
-// Any TOML file as JSON, for files that are no scenarios; dates and times are refused. Throws Failure
-// naming the file when it is missing or no TOML.
+// Any TOML file as JSON, for files that are no scenarios; dates and times are refused. Throws
+// Failure naming the file when it is missing or no TOML.
 nlohmann::json load_toml(const std::filesystem::path& file);
 
 // The keys whose values differ, in the order of proto/settings.h.

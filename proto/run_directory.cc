@@ -73,6 +73,12 @@ void sync(const fs::path& path, int flags) {
   }
 }
 
+void create_folders(const fs::path& root) {
+  for (const char* name : {"sumo", "log", "metrics", "checkpoints", "evaluation/episodes"}) {
+    fs::create_directories(root / name);
+  }
+}
+
 }  // namespace
 
 void sync_file(const fs::path& file) { sync(file, 0); }
@@ -133,9 +139,7 @@ RunDirectory RunDirectory::create(const fs::path& root) {
           "another name",
           root.string());
     }
-    for (const char* name : {"sumo", "log", "metrics", "checkpoints", "evaluation/episodes"}) {
-      fs::create_directories(root / name);
-    }
+    create_folders(root);
     for (const fs::path& made : {root, parent_of(root)}) sync_directory(made);
   });
   return RunDirectory(root);
@@ -150,6 +154,7 @@ RunDirectory RunDirectory::open(const fs::path& root) {
                     file.filename().string());
     }
   }
+  on_disk("create folders in", root, [&] { create_folders(root); });
   return directory;
 }
 

@@ -50,7 +50,7 @@ struct TrafficSettings {
   // Objects, beside the vehicles: narrow, at the right or left edge of a drawn lane, so that
   // whoever comes can go around without changing lane. Each 1/objects_per_km of the road has one.
   double objects_per_km = 0.0;
-  double object_width_m = 0.75;   // so wide that the ego in the lane's middle would hit it
+  double object_width_m = 0.75;  // so wide that the ego in the lane's middle would hit it
   double object_length_m = 9.0;  // so long that nobody jumps over it in one step
   double object_speed_mps = 0.0;
 
@@ -188,7 +188,8 @@ struct ScheduleSettings {
   std::int64_t selection_every_steps = 100'000;  // greedy evaluation; all actors together
   int selection_episodes = 16;                   // on seeds of its own, the same each time
   double selection_collision_cost = 50.0;  // best = reward - cost * collisions, per 1000 steps
-  // Which BP asks while the MoP is trained: "random", or "learned", of a run that was given networks.
+  // Which BP asks while the MoP is trained: "random", or "learned", of a run that was given
+  // networks.
   std::string mop_commands = "random";
   std::int64_t checkpoint_every_steps = 50'000;
   int checkpoints_kept = 2;

@@ -21,9 +21,8 @@ int bypasses(const Scene& before, const Scene& after, const DrivingSettings& set
   const int lane = Lanes(settings).lane_at(after.ego.d_m);
   if (!is_within(lane, before.ego, settings) || !is_within(lane, after.ego, settings)) return 0;
   return static_cast<int>(std::ranges::count_if(after.others, [&](const Vehicle& other) {
-    const auto earlier = std::ranges::lower_bound(before.others, other.id, {}, &Vehicle::id);
-    return earlier != before.others.end() && earlier->id == other.id &&
-           before.ego.s_m < earlier->s_m && after.ego.s_m >= other.s_m &&
+    const Vehicle* earlier = find_vehicle(before, other.id);
+    return earlier != nullptr && before.ego.s_m < earlier->s_m && after.ego.s_m >= other.s_m &&
            Lanes(settings).lane_at(other.d_m) == lane;
   }));
 }

@@ -9,6 +9,7 @@
 #include "proto/schedule.h"
 #include "proto/tensor_file.h"
 #include "tests/support/temporary_directory.h"
+#include "tests/support/untrained_run.h"
 
 namespace corridor::cluster {
 namespace {
@@ -18,10 +19,6 @@ using testing::ThrowsMessage;
 
 class Evaluation : public testing::Test {
  protected:
-  Evaluation() {
-    write_file(directory_.config(), to_toml(config_));
-    write_file(directory_.manifest(), "{}");
-  }
   // As after the given number of rounds.
   void put_checkpoint(std::uint64_t rounds_done) {
     Checkpoints(directory_.checkpoints()).begin(rounds_done - 1);
@@ -38,8 +35,8 @@ class Evaluation : public testing::Test {
   }
 
   testing_support::TemporaryDirectory temporary_;
-  RunDirectory directory_ = RunDirectory::create(temporary_.path() / "run");
   RunConfig config_;
+  RunDirectory directory_ = testing_support::untrained_run(temporary_.path() / "run", config_);
 };
 
 TEST_F(Evaluation, PlannersWithoutLearnedPartsNeedNoCheckpoint) {

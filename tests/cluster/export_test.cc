@@ -5,9 +5,8 @@
 
 #include "proto/checkpoints.h"
 #include "proto/failure.h"
-#include "proto/run_config.h"
-#include "proto/run_directory.h"
 #include "tests/support/temporary_directory.h"
+#include "tests/support/untrained_run.h"
 
 namespace corridor::cluster {
 namespace {
@@ -17,9 +16,7 @@ using testing::ThrowsMessage;
 
 TEST(Export, OfATrainingThatIsNotCompleteIsRefusedAndLeavesNothing) {
   testing_support::TemporaryDirectory temporary;
-  const RunDirectory run = RunDirectory::create(temporary.path() / "run");
-  write_file(run.config(), to_toml(RunConfig{}));
-  write_file(run.manifest(), "{}");
+  const RunDirectory run = testing_support::untrained_run(temporary.path() / "run");
   const auto to = temporary.path() / "to";
   const auto refused = [&] {
     EXPECT_THAT([&] { export_run(run.root(), to); },

@@ -4,9 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "proto/failure.h"
-#include "proto/run_config.h"
-#include "proto/run_directory.h"
 #include "tests/support/temporary_directory.h"
+#include "tests/support/untrained_run.h"
 
 namespace corridor::cluster {
 namespace {
@@ -16,9 +15,7 @@ using testing::ThrowsMessage;
 
 TEST(Hindsight, RefusesWhatHasNotBeenEvaluatedOrIsNot) {
   testing_support::TemporaryDirectory temporary;
-  const RunDirectory directory = RunDirectory::create(temporary.path() / "run");
-  write_file(directory.config(), to_toml(RunConfig{}));
-  write_file(directory.manifest(), "{}");
+  const RunDirectory directory = testing_support::untrained_run(temporary.path() / "run");
   const auto expect_refused = [&](HindsightOptions options, const char* text) {
     options.run = directory.root();
     EXPECT_THAT([&] { hindsight(options); }, ThrowsMessage<Failure>(HasSubstr(text)));

@@ -26,6 +26,7 @@ TEST(Listed, PutsCommasBetween) {
   EXPECT_EQ(listed({}), "");
   EXPECT_EQ(listed({"a"}), "a");
   EXPECT_EQ(listed({"a", "b", "c"}), "a, b, c");
+  EXPECT_EQ(listed({"", "b"}, "-"), "-b");
 }
 
 }  // namespace

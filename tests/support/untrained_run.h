@@ -1,0 +1,18 @@
+// A run directory as `corridor train` makes it, before anything was trained.
+#pragma once
+
+#include <filesystem>
+
+#include "proto/run_config.h"
+#include "proto/run_directory.h"
+
+namespace corridor::testing_support {
+
+inline RunDirectory untrained_run(const std::filesystem::path& root, const RunConfig& config = {}) {
+  const RunDirectory directory = RunDirectory::create(root);
+  write_file(directory.config(), to_toml(config));
+  write_file(directory.manifest(), "{}");
+  return directory;
+}
+
+}  // namespace corridor::testing_support
