@@ -3,6 +3,7 @@
 #include "actor/driving/observation.h"
 #include "actor/driving/reward.h"
 #include "actor/planners.h"
+#include "actor/world/traffic_distribution.h"
 #include "proto/failure.h"
 
 namespace corridor::actor {
@@ -97,7 +98,8 @@ SelectionOutcome PhaseRollout::select(const Weights& weights) {
 
 void PhaseRollout::begin_episode() {
   const auto seed = training_episode_seed(config_.run.seed, phase_, actor_, episode_index_);
-  episode_.begin({.seed = seed});
+  episode_.begin({.seed = seed,
+                  .traffic = world::draw_traffic(config_.traffic, config_.training_traffic, seed)});
   random_bp_.begin_episode(seed);
   exploration_.begin_episode(episode_index_);
   episode_open_ = true;

@@ -65,11 +65,39 @@ void check_traffic(const TrafficSettings& traffic) {
           traffic.slow_share, traffic.truck_share);
 }
 
+template <typename T>
+void require_range(const char* key, const std::vector<T>& range) {
+  require(range.empty() || (range.size() == 2 && range[0] <= range[1]),
+          "training_traffic.{} = {} is neither [low, high] nor []", key, toml_of(range));
+}
+
+// Whatever an episode draws must satisfy what [traffic] must.
+void check_training_traffic(const TrafficSettings& traffic, const TrafficDistribution& training) {
+  require_range("vehicles", training.vehicles);
+  require_range("slow_share", training.slow_share);
+  require_range("speed_factor_mean", training.speed_factor_mean);
+  require_range("blind_rate_per_s", training.blind_rate_per_s);
+  require_range("objects_per_km", training.objects_per_km);
+  if (!training.slow_share.empty()) {
+    require(training.slow_share[1] + traffic.truck_share <= 1.0,
+            "training_traffic.slow_share = {} and traffic.truck_share = {} can be more than all",
+            toml_of(training.slow_share), traffic.truck_share);
+  }
+  for (const double mean : training.speed_factor_mean) {
+    require(mean >= traffic.speed_factor_min && mean <= traffic.speed_factor_max,
+            "training_traffic.speed_factor_mean = {} reaches beyond traffic.speed_factor_min = {} "
+            "or traffic.speed_factor_max = {}",
+            toml_of(training.speed_factor_mean), traffic.speed_factor_min,
+            traffic.speed_factor_max);
+  }
+}
+
 // An object at one edge of a lane must leave clear the corridor furthest from it that the ego may
 // use without intruding on the next lane.
 void check_objects(const RunConfig& config) {
   const TrafficSettings& traffic = config.traffic;
-  if (traffic.objects_per_km == 0.0) return;
+  const auto& training = config.training_traffic.objects_per_km;
+  if (traffic.objects_per_km == 0.0 && (training.empty() || training[1] == 0.0)) return;
   const double corridor_m = config.road.lane_width_m / config.planner.corridors_per_lane;
   const double off_middle_m = (config.road.lane_width_m - config.ego.width_m) / 2;
   const double last_centre_m =
@@ -135,6 +163,7 @@ void check_config(const RunConfig& config, const std::string& name) {
   try {
     check_road(config);
     check_traffic(config.traffic);
+    check_training_traffic(config.traffic, config.training_traffic);
     check_planners(config);
     check_objects(config);
     check_dqn(config, Phase::kMop);

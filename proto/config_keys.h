@@ -77,6 +77,17 @@ void describe(TrafficSettings& traffic, Visitor& v) {
 }
 
 template <typename Visitor>
+void describe(TrafficDistribution& traffic, Visitor& v) {
+  v.table("training_traffic",
+          "[low, high] of what each training episode draws anew; []: as in [traffic].");
+  v.list("vehicles", traffic.vehicles, Count{0, 2}, 0, 200, "");
+  v.list("slow_share", traffic.slow_share, Count{0, 2}, 0.0, 1.0, "");
+  v.list("speed_factor_mean", traffic.speed_factor_mean, Count{0, 2}, 0.05, 2.0, "");
+  v.list("blind_rate_per_s", traffic.blind_rate_per_s, Count{0, 2}, 0.0, 1.0, "");
+  v.list("objects_per_km", traffic.objects_per_km, Count{0, 2}, 0.0, 20.0, "");
+}
+
+template <typename Visitor>
 void describe(EgoSettings& ego, Visitor& v) {
   v.table("ego", "The car that is driven, and its kinematic limits.");
   v.number("length_m", ego.length_m, 1.0, 20.0, "");
@@ -255,6 +266,7 @@ void describe(RunConfig& config, Visitor& v) {
   describe(config.road, v);
   describe(config.simulation, v);
   describe(config.traffic, v);
+  describe(config.training_traffic, v);
   describe(config.ego, v);
   describe(config.planner, v);
   describe(config.mop_reward, v);

@@ -25,6 +25,7 @@ enum class Purpose : std::uint64_t {
   kWireDelay = 12,        // tests that slow processes at random
   kChaos = 13,            // tests that kill processes at random
   kObject = 14,           // (episode seed, object, draw)
+  kTrainingTraffic = 15,  // (episode seed, quantity)
 };
 
 // 64 uniform bits. Cost: a few ns for each index.

@@ -60,6 +60,16 @@ struct TrafficSettings {
   static constexpr double kObjectMargin_m = 0.01;
 };
 
+// [training_traffic] What of [traffic] each training episode draws anew: [low, high], uniform;
+// empty: as in [traffic]. Evaluation, that during training too, drives in [traffic] itself.
+struct TrafficDistribution {
+  std::vector<int> vehicles;
+  std::vector<double> slow_share;
+  std::vector<double> speed_factor_mean;
+  std::vector<double> blind_rate_per_s;
+  std::vector<double> objects_per_km;
+};
+
 // [ego] The car that is driven, and its kinematic limits.
 struct EgoSettings {
   double length_m = 5.0;
@@ -219,6 +229,7 @@ struct RunConfig {
   RoadSettings road;
   SimulationSettings simulation;
   TrafficSettings traffic;
+  TrafficDistribution training_traffic;
   EgoSettings ego;
   PlannerSettings planner;
   MopRewardSettings mop_reward;

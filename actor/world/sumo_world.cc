@@ -83,7 +83,7 @@ driving::Scene SumoWorld::begin(const EpisodeStart& start) {
     const auto right_lane = libsumo::Lane::getShape(lane_id(0)).value;
     right_edge_y_m_ = right_lane.front().y - settings_.road.lane_width_m / 2;
     new_objects_.clear();
-    traffic_.emplace(traffic_scenario(), start.seed);
+    traffic_.emplace(traffic_scenario(start), start.seed);
     scene_ = Scene{traffic_->start(), {}};
     add_ego(scene_.ego, start.driver);
     for (const Entrance& entrance : traffic_->populate(scene_.ego)) add(entrance);
@@ -256,11 +256,11 @@ std::vector<std::string> SumoWorld::options(const EpisodeStart& start) const {
 }
 
 // The sizes of the vehicle types, as the file that SUMO has loaded gives them.
-TrafficScenario SumoWorld::traffic_scenario() const {
+TrafficScenario SumoWorld::traffic_scenario(const EpisodeStart& start) const {
   const auto size = [](const char* type) {
     return VehicleSize{libsumo::VehicleType::getLength(type), libsumo::VehicleType::getWidth(type)};
   };
-  return {settings_.traffic,
+  return {start.traffic.value_or(settings_.traffic),
           settings_.road,
           settings_.ego,
           settings_.simulation.step_s,

@@ -50,7 +50,7 @@ class SumoWorld : public World {
 
  private:
   std::vector<std::string> options(const EpisodeStart& start) const;
-  TrafficScenario traffic_scenario() const;
+  TrafficScenario traffic_scenario(const EpisodeStart& start) const;
   void add_ego(const driving::Ego& ego, EgoDriver driver);
   void obey_trajectories();
   void add(const Entrance& entrance);

@@ -8,6 +8,7 @@
 #include "actor/driving/collision.h"
 #include "actor/driving/scene.h"
 #include "actor/driving/trajectory.h"
+#include "proto/settings.h"
 
 namespace corridor::world {
 
@@ -20,6 +21,7 @@ struct EpisodeStart {
   std::uint64_t seed = 0;  // all that is random in the episode follows from it
   EgoDriver driver = EgoDriver::kPlanner;
   std::filesystem::path fcd_output{};  // SUMO's own record of every vehicle's motion; empty: none
+  std::optional<TrafficSettings> traffic{};  // the episode's own, in place of the world's
 };
 
 struct StepResult {

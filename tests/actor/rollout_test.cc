@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <set>
+
 #include "proto/failure.h"
 #include "proto/random.h"
 #include "tests/support/fake_world.h"
@@ -63,6 +65,26 @@ TEST_P(InEachPhase, GivesTheSameChunksForTheSameRounds) {
   for (std::uint64_t round = first; round < first + 6; ++round) {
     EXPECT_EQ(a.drive_round(weights_of(config, round)), b.drive_round(weights_of(config, round)));
   }
+}
+
+TEST_P(InEachPhase, DrivesEachEpisodeInItsOwnTrafficAgainWhenItStartsAnewAndNotInSelection) {
+  config.training_traffic.blind_rate_per_s = {0.0, 0.5};
+  FakeWorld world(config);
+  PhaseRollout rollout(config, 1, world, account, first, {});
+  std::set<double> rates;
+  for (std::uint64_t round = first; round < first + 4; ++round) {
+    const Insert chunk = rollout.drive_round(weights_of(config, round));
+    ASSERT_TRUE(world.traffic);
+    rates.insert(world.traffic->blind_rate_per_s);
+    if (chunk.open.actions.empty()) continue;
+    FakeWorld fresh_world(config);
+    PhaseRollout fresh(config, 1, fresh_world, account, round + 1, chunk.open);
+    ASSERT_TRUE(fresh_world.traffic);
+    EXPECT_EQ(fresh_world.traffic->blind_rate_per_s, world.traffic->blind_rate_per_s);
+  }
+  EXPECT_GE(rates.size(), 2u);
+  rollout.select(weights_of(config, first + 4));
+  EXPECT_FALSE(world.traffic);
 }
 
 TEST_P(InEachPhase, ActorsDriveDifferentEpisodes) {

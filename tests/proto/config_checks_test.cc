@@ -52,6 +52,24 @@ const std::vector<Contradiction>& contradictions() {
        "traffic.object_length_m = 6.9 is so short that the ego can jump over it in a step of 1 s: "
        "at "
        "least 7.00 is needed"},
+      {[](RunConfig& c) { c.training_traffic.vehicles = {9}; },
+       "training_traffic.vehicles = [9] is neither [low, high] nor []"},
+      {[](RunConfig& c) {
+         c.training_traffic.blind_rate_per_s = {0.02, 0.01};
+       },
+       "training_traffic.blind_rate_per_s = [0.02, 0.01] is neither [low, high] nor []"},
+      {[](RunConfig& c) {
+         c.traffic.truck_share = 0.1, c.training_traffic.slow_share = {0.2, 0.95};
+       },
+       "training_traffic.slow_share = [0.2, 0.95] and traffic.truck_share = 0.1 can be more"},
+      {[](RunConfig& c) {
+         c.traffic.speed_factor_min = 0.4, c.training_traffic.speed_factor_mean = {0.3, 0.8};
+       },
+       "training_traffic.speed_factor_mean = [0.3, 0.8] reaches beyond traffic.speed_factor_min"},
+      {[](RunConfig& c) {
+         c.training_traffic.objects_per_km = {0.0, 3.0}, c.traffic.object_width_m = 2.0;
+       },
+       "traffic.object_width_m = 2 leaves the ego no corridor"},
       {[](RunConfig& c) { c.planner.corridors_per_lane = 4; },
        "planner.corridors_per_lane = 4 must be odd"},
       {[](RunConfig& c) {

@@ -2,6 +2,7 @@
 // from the episode's seed; the ego follows its trajectories exactly.
 #pragma once
 
+#include <optional>
 #include <utility>
 
 #include "actor/driving/collision.h"
@@ -19,6 +20,7 @@ class FakeWorld : public world::World {
 
   driving::Scene begin(const world::EpisodeStart& start) override {
     ++episodes_begun;
+    traffic = start.traffic;
     scene_ = {};
     scene_.ego.s_m = 500.0;
     scene_.ego.d_m = lanes_.lane_centre_m(1);
@@ -59,6 +61,7 @@ class FakeWorld : public world::World {
   void end() override {}
 
   int episodes_begun = 0;
+  std::optional<TrafficSettings> traffic;  // of the last start
 
  private:
   world::StepResult advance(const driving::Ego& ego) {

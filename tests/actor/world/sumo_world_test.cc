@@ -222,6 +222,14 @@ TEST_F(SumoWorldTest, DrivesTheEgoItselfFasterThanItsTrafficAndOverTheLanes) {
   EXPECT_GE(std::count_if(lanes.begin(), lanes.end(), [](int steps) { return steps > 0; }), 2);
 }
 
+TEST_F(SumoWorldTest, DrivesAnEpisodeInItsOwnTraffic) {
+  SumoWorld world = make();
+  TrafficSettings few = config_.traffic;
+  few.vehicles_min = few.vehicles_max = 3;
+  EXPECT_LE(world.begin({.seed = 11, .traffic = few}).others.size(), 3u);
+  EXPECT_GT(world.begin({.seed = 11}).others.size(), 6u);
+}
+
 class SumoObjects : public SumoWorldTest {
  protected:
   SumoObjects() {
