@@ -1,7 +1,10 @@
 #include "actor/planners.h"
 
+#include <utility>
+
 #include "actor/driving/observation.h"
 #include "actor/driving/rules.h"
+#include "actor/driving/shield.h"
 
 namespace corridor::actor {
 
@@ -52,15 +55,20 @@ std::unique_ptr<driving::BehaviourPlanner> make_behaviour_planner(const PlannerP
 std::unique_ptr<driving::MotionPlanner> make_motion_planner(const PlannerPair& pair,
                                                             const RunConfig& config,
                                                             const Networks& networks) {
+  const DrivingSettings settings = driving_settings(config);
+  std::unique_ptr<driving::MotionPlanner> planner;
   switch (pair.mop) {
     case MopKind::kLearned:
-      return std::make_unique<QMotionPlanner>(config, networks.mop);
+      planner = std::make_unique<QMotionPlanner>(config, networks.mop);
+      break;
     case MopKind::kRules:
-      return std::make_unique<driving::RuleBasedMop>(driving_settings(config));
+      planner = std::make_unique<driving::RuleBasedMop>(settings);
+      break;
     case MopKind::kNone:
       break;
   }
-  return nullptr;
+  if (!pair.shielded) return planner;
+  return std::make_unique<driving::ShieldedMop>(std::move(planner), settings);
 }
 
 }  // namespace corridor::actor

@@ -1,6 +1,6 @@
 // The pairs of planners that can be evaluated, in the order of a table's rows: those of the paper's
-// Table I, the naive ones that a table must be read against, and those under the BP of MoP
-// training. What the command may ask an actor for.
+// Table I, those behind the safety shield, the naive ones that a table must be read against, and
+// those under the BP of MoP training. What the command may ask an actor for.
 #pragma once
 
 #include <string_view>
@@ -23,7 +23,8 @@ struct PlannerPair {
   const char* meaning;
   BpKind bp;
   MopKind mop;
-  bool by_default;  // evaluated when no pairs are named
+  bool by_default;        // evaluated when no pairs are named
+  bool shielded = false;  // the MoP's actions pass the safety shield (actor/driving/shield.h)
 
   bool world_drives() const { return bp == BpKind::kNone; }
   bool learned() const { return bp == BpKind::kLearned || mop == MopKind::kLearned; }
@@ -35,6 +36,12 @@ inline constexpr PlannerPair kPlannerPairs[] = {
     {"rules+mop", "rule-based BP over learned MoP", BpKind::kRules, MopKind::kLearned, true},
     {"bp+rules", "learned BP over rule-based MoP", BpKind::kLearned, MopKind::kRules, true},
     {"sumo", "SUMO drives the ego", BpKind::kNone, MopKind::kNone, true},
+    {"hierarchical+shield", "hierarchical behind the safety shield", BpKind::kLearned,
+     MopKind::kLearned, false, true},
+    {"rules+shield", "rules behind the safety shield", BpKind::kRules, MopKind::kRules, false,
+     true},
+    {"rules+mop+shield", "rules+mop behind the safety shield", BpKind::kRules, MopKind::kLearned,
+     false, true},
     {"left+rules", "go to the left lane and stay", BpKind::kAlwaysLeft, MopKind::kRules, false},
     {"left+mop", "go to the left lane and stay", BpKind::kAlwaysLeft, MopKind::kLearned, false},
     {"keep+mop", "stay in the lane", BpKind::kAlwaysKeep, MopKind::kLearned, false},

@@ -8,9 +8,8 @@
 
 namespace corridor::driving {
 
-// The separation of two rectangles along the road's axes: the larger of the distances along and
-// across the road, < 0 where they overlap. Of the ego, driving on its trajectory, and the nearest
-// other vehicle, driving on at its speed and lateral speed; at most kClearanceMax_m.
+// The separation (actor/driving/prediction.h) of the ego, driving on its trajectory, and the
+// nearest other vehicle, driving on at its speed and lateral speed; at most kClearanceMax_m.
 inline constexpr double kClearanceMax_m = 2.0;
 
 // For corridor changes -1, 0, +1 (outer), with the hardest braking and with the set-point as it is

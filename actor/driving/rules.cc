@@ -20,6 +20,7 @@ constexpr double kIncreaseHolds_s = 2.0;      // a rise of the set-point is to l
 constexpr double kGoOnShare = 0.8;
 // A lane's worth is the speed that brings the ego up to its leader in this time.
 constexpr double kHorizon_s = 12.0;
+constexpr double kBypassGain_mps = 1.0;  // leave a lane's middle for so much more
 
 double braking_way_m(double speed_mps, double braking_mps2) {
   return speed_mps * speed_mps / (2 * braking_mps2);
@@ -33,6 +34,15 @@ double closing_way_m(double rate_mps, double braking_mps2) {
 // The distance to follow at, d of the MoP's reward.
 double headway_m(double speed_mps, const DrivingSettings& settings) {
   return settings.mop_reward.headway_s * speed_mps + settings.mop_reward.standstill_gap_m;
+}
+
+// The speed to be had behind a leader for a while: the limit where none is in range.
+double promise_mps(const CorridorGaps& gaps, const Ego& ego, const DrivingSettings& settings) {
+  const double limit_mps = settings.road.speed_limit_mps;
+  if (gaps.front_gap_m >= std::min(settings.rules.leader_range_m, settings.planner.gap_range_m))
+    return limit_mps;
+  const double spare_m = std::max(0.0, gaps.front_gap_m - headway_m(ego.speed_mps, settings));
+  return std::min(limit_mps, ego.speed_mps + gaps.front_rate_mps + spare_m / kHorizon_s);
 }
 
 // How much is left of a corridor's gaps when whoever is behind brakes comfortably; < 0: too little.
@@ -74,13 +84,13 @@ int RuleBasedMop::corridor_change(const Situation& situation, const Window& wind
   const CorridorGaps& gaps = gaps_in(corridor);
   const Slack here = slack_of(gaps, settings_.rules);
 
-  const int off_middle = window.middle() - window.position_of(corridor);
-  const int towards_middle = (off_middle > 0) - (off_middle < 0);
-  const int wanted = std::clamp(corridor + towards_middle, 0, lanes_.corridors() - 1);
+  const int off_goal = goal_corridor(situation, window) - corridor;
+  const int towards_goal = (off_goal > 0) - (off_goal < 0);
+  const int next = std::clamp(corridor + towards_goal, 0, lanes_.corridors() - 1);
   // The way back from a closed corridor may lead through another.
-  const bool allowed = window.is_open(wanted) || !window.is_open(corridor);
-  if (wanted != corridor && allowed && acceptable(slack_of(gaps_in(wanted), settings_.rules), here))
-    return towards_middle;
+  const bool allowed = window.is_open(next) || !window.is_open(corridor);
+  if (next != corridor && allowed && acceptable(slack_of(gaps_in(next), settings_.rules), here))
+    return towards_goal;
 
   const double stopping_m = kStopGap_m + closing_way_m(gaps.front_rate_mps, kHardBraking_mps2);
   if (gaps.front_gap_m >= stopping_m) return 0;
@@ -96,6 +106,24 @@ int RuleBasedMop::corridor_change(const Situation& situation, const Window& wind
     }
   }
   return safest;
+}
+
+// The middle, or what is open beside it when that promises more: past an object at the lane's edge.
+int RuleBasedMop::goal_corridor(const Situation& situation, const Window& window) const {
+  const auto promise = [&](int corridor) {
+    return promise_mps(situation.gaps[static_cast<std::size_t>(corridor)], situation.scene.ego,
+                       settings_);
+  };
+  const int middle = window.first + window.middle();
+  const bool lane_is_kept = middle >= 0 && middle < lanes_.corridors() &&
+                            middle == lanes_.middle_of_lane(lanes_.lane_of(middle));
+  if (!lane_is_kept) return middle;
+  int goal = middle;
+  for (const int beside : {middle - 1, middle + 1}) {
+    if (!window.is_open(beside)) continue;
+    if (promise(beside) > promise(goal) + kBypassGain_mps) goal = beside;
+  }
+  return goal;
 }
 
 int RuleBasedMop::speed_change(const Situation& situation, int corridor_change) const {
@@ -170,30 +198,24 @@ Command RuleBasedBp::decide(const Situation& situation) {
 int RuleBasedBp::better_lane(const Scene& scene, int lane) const {
   const RulesSettings& rules = settings_.rules;
   const double slow_mps = settings_.road.speed_limit_mps - rules.slow_leader_mps;
-  const double own_mps = promise_mps(scene, lane);
+  const double own_mps = lane_promise_mps(scene, lane);
   if (own_mps < slow_mps) {
     for (const int other : {lane + 1, lane - 1}) {
       if (other < 0 || other >= lanes_.lanes()) continue;
-      if (promise_mps(scene, other) >= own_mps + rules.gain_mps && has_room(scene, other, 1.0))
+      if (lane_promise_mps(scene, other) >= own_mps + rules.gain_mps && has_room(scene, other, 1.0))
         return other;
     }
     return -1;
   }
   const int right = lane - 1;
   const bool right_is_free =
-      right >= 0 && promise_mps(scene, right) >= slow_mps &&
+      right >= 0 && lane_promise_mps(scene, right) >= slow_mps &&
       lane_gaps(scene, right, settings_).front_gap_m >= rules.return_right_s * scene.ego.speed_mps;
   return right_is_free && has_room(scene, right, 1.0) ? right : -1;
 }
 
-double RuleBasedBp::promise_mps(const Scene& scene, int lane) const {
-  const CorridorGaps gaps = lane_gaps(scene, lane, settings_);
-  const double limit_mps = settings_.road.speed_limit_mps;
-  if (gaps.front_gap_m >= std::min(settings_.rules.leader_range_m, settings_.planner.gap_range_m))
-    return limit_mps;
-  const double speed_mps = scene.ego.speed_mps;
-  const double spare_m = std::max(0.0, gaps.front_gap_m - headway_m(speed_mps, settings_));
-  return std::min(limit_mps, speed_mps + gaps.front_rate_mps + spare_m / kHorizon_s);
+double RuleBasedBp::lane_promise_mps(const Scene& scene, int lane) const {
+  return promise_mps(lane_gaps(scene, lane, settings_), scene.ego, settings_);
 }
 
 bool RuleBasedBp::has_room(const Scene& scene, int lane, double share) const {

@@ -18,8 +18,7 @@ class RuleBasedBp : public BehaviourPlanner {
 
  private:
   int better_lane(const Scene& scene, int lane) const;  // or -1
-  // The speed to be had there for a while: the limit where no leader is in leader_range_m.
-  double promise_mps(const Scene& scene, int lane) const;
+  double lane_promise_mps(const Scene& scene, int lane) const;
   // At least this share of the gaps that a change to the lane needs.
   bool has_room(const Scene& scene, int lane, double share) const;
 
@@ -51,6 +50,7 @@ class RuleBasedMop : public MotionPlanner {
 
  private:
   int corridor_change(const Situation& situation, const Window& window) const;
+  int goal_corridor(const Situation& situation, const Window& window) const;
   int speed_change(const Situation& situation, int corridor_change) const;
   // Whether a step towards `target` keeps a safe distance to the leader of these gaps.
   bool keeps_distance(const CorridorGaps& gaps, const Ego& ego, const Target& target) const;

@@ -39,8 +39,8 @@ TEST(Arms, ComeInTheOrderOfTheTableWhateverTheirOrderBefore) {
   std::string order;
   for (const Arm& arm : arms_of(results)) order += arm.planner + " ";
   EXPECT_TRUE(
-      order.starts_with("hierarchical rules rules+mop bp+rules sumo left+rules left+mop "
-                        "keep+mop "))
+      order.starts_with("hierarchical rules rules+mop bp+rules sumo hierarchical+shield "
+                        "rules+shield rules+mop+shield left+rules left+mop keep+mop "))
       << order;
 }
 

@@ -18,12 +18,15 @@ TEST(PlannerPairs, AreFoundByName) {
   EXPECT_TRUE(planner_pair("sumo").world_drives());
   EXPECT_FALSE(planner_pair("left+rules").world_drives());
   EXPECT_EQ(planner_pair("random+rules").bp, BpKind::kRandom);
+  EXPECT_FALSE(planner_pair("hierarchical").shielded);
+  EXPECT_TRUE(planner_pair("hierarchical+shield").shielded);
 }
 
 TEST(PlannerPairs, ThePapersRowsAreEvaluatedByDefaultAndTheOthersOnRequest) {
   for (const PlannerPair& pair : kPlannerPairs) {
     const bool of_the_paper =
-        pair.bp == BpKind::kLearned || pair.bp == BpKind::kRules || pair.bp == BpKind::kNone;
+        !pair.shielded &&
+        (pair.bp == BpKind::kLearned || pair.bp == BpKind::kRules || pair.bp == BpKind::kNone);
     EXPECT_EQ(pair.by_default, of_the_paper) << pair.name;
   }
 }

@@ -94,6 +94,26 @@ TEST(RuleBasedMop, ComesBackFromACorridorThatClosedWithACancelledChange) {
   }
 }
 
+// Stopped at the right edge of the ego's lane, its near end 60 m ahead.
+TEST(RuleBasedMop, GoesAroundAnObjectAtTheLanesEdgeAndBackToTheMiddle) {
+  const Vehicle object{.id = 1, .s_m = 169.0, .d_m = 3.585, .length_m = 9.0, .width_m = 0.75};
+  RuleBasedMop mop(kSettings);
+  Ego ego = ego_in_the_middle();
+  double most_left_m = 0.0;
+  for (int step = 0; step < 15; ++step) {
+    const Situation situation = situation_of({ego, {object}}, kSettings);
+    ego =
+        advance(ego, mop.decide(situation, window_for(Command::kKeep, ego, kSettings)), kSettings);
+    const bool beside = ego.s_m > 160.0 && ego.s_m < 169.0 + kSettings.ego.length_m;
+    EXPECT_FALSE(beside && overlap_across(ego, object, kSettings.ego)) << step;
+    EXPECT_GT(ego.speed_mps, 5.0);
+    most_left_m = std::max(most_left_m, ego.d_m);
+  }
+  EXPECT_GT(ego.s_m, 169.0 + kSettings.ego.length_m);
+  EXPECT_NEAR(most_left_m, 5.44, 1e-9);
+  EXPECT_NEAR(ego.d_m, 4.8, 1e-9);
+}
+
 TEST(RuleBasedMop, ChoosesOpenCorridorsOnlyInRandomScenes) {
   const Lanes lanes(kSettings);
   for (std::uint64_t seed = 0; seed < 2000; ++seed) {
