@@ -1,10 +1,12 @@
 // corridor-actor: one car in one SUMO. In a training run it explores; by itself it evaluates,
-// drives a recorded episode again, or looks back on an evaluation's collisions.
+// drives a recorded episode again, for its figures too, or looks back on an evaluation's
+// collisions.
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <optional>
 #include <string>
 
+#include "actor/episode_trace.h"
 #include "actor/evaluation.h"
 #include "actor/hindsight_report.h"
 #include "actor/training.h"
@@ -29,6 +31,7 @@ struct Arguments {
   std::string networks;
   std::string fcd;
   std::string episode;
+  std::string trace;
   std::string look_back;
   actor::HindsightLimits hindsight;
 };
@@ -65,6 +68,11 @@ int redrive(const Arguments& arguments, const RunConfig& config, world::World& w
   return result.hash == result.recorded_hash ? 0 : 1;
 }
 
+int trace(const Arguments& arguments, const RunConfig& config, world::World& world) {
+  std::puts(to_json(actor::trace_episode(config, arguments.trace, world)).dump().c_str());
+  return 0;
+}
+
 int look_back(const Arguments& arguments, const RunConfig& config, const RunDirectory& directory,
               world::World& world) {
   const actor::HindsightTask task{arguments.look_back, arguments.seed, arguments.hindsight};
@@ -83,6 +91,7 @@ int run(const Arguments& arguments) {
   world::SumoWorld world(world::world_settings(config), directory.network(), directory.routes(),
                          time);
   if (!arguments.episode.empty()) return redrive(arguments, config, world);
+  if (!arguments.trace.empty()) return trace(arguments, config, world);
   if (!arguments.look_back.empty()) return look_back(arguments, config, directory, world);
   if (!arguments.planners.empty()) return evaluate(arguments, config, directory, world);
   if (arguments.index < 0 || arguments.index >= config.run.actors) {
@@ -108,6 +117,8 @@ int main(int argc, char** argv) {
   app.add_option("--fcd", arguments.fcd,
                  "SUMO writes its trajectories here (evaluate: a directory; redrive: a file)");
   app.add_option("--redrive", arguments.episode, "drive this recorded episode again");
+  app.add_option("--trace", arguments.trace,
+                 "drive this recorded episode again and print every step as JSON");
   app.add_option("--look-back", arguments.look_back,
                  "search how this planner pair's collisions in an evaluation could be avoided");
   app.add_option("--actions", arguments.hindsight.actions, "look back: by the last so many actions")

@@ -3,7 +3,6 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
-#include <array>
 #include <set>
 
 #include "cluster/text.h"
@@ -11,33 +10,9 @@
 namespace corridor::cluster {
 namespace {
 
-constexpr std::array kColours = {"0072b2", "d55e00", "009e73", "cc79a7", "e69f00", "56b4e9"};
-constexpr const char* kInk = "333333";
 constexpr int kPanelWidth = 380, kHeight = 350;  // pixels
 
 const char* colour(std::size_t curve) { return kColours[curve % kColours.size()]; }
-
-// In single quotes gnuplot takes everything as it is; in double ones it runs `commands`.
-std::string quoted(const std::string& text) {
-  std::string result = "'";
-  for (const char c : text) {
-    if (c == '\'') result += '\'';
-    result += c == '\n' ? ' ' : c;
-  }
-  return result + "'";
-}
-
-std::string terminal(const Figure& figure, PictureFormat format) {
-  const int width = kPanelWidth * static_cast<int>(figure.panels.size());
-  if (format == PictureFormat::kSvg) {
-    return fmt::format(
-        "set terminal svg size {},{} dynamic name {} font 'Helvetica,Arial,sans-serif,13'\n", width,
-        kHeight, quoted(figure.name));
-  }
-  // Twice as large, for print.
-  return fmt::format("set terminal pngcairo size {},{} font 'sans,10' fontscale 2 linewidth 2\n",
-                     2 * width, 2 * kHeight);
-}
 
 // The steps of one panel's curves as data blocks, in thousands.
 std::string data_blocks(const Panel& panel, std::size_t number) {
@@ -123,8 +98,8 @@ std::string panel_script(const Figure& figure, std::size_t number) {
   for (const Plot& plot : plots_of(figure, panel, number)) {
     items.push_back(plot.data + " with " + plot.style + " notitle");
   }
-  return fmt::format("set title {} textcolor rgb '#{}'\n", quoted(panel.title), kInk) +
-         fmt::format("set ylabel {} textcolor rgb '#{}' offset 0.5,0\n", quoted(panel.unit), kInk) +
+  return fmt::format("set title {} textcolor rgb '#{}'\n", literal(panel.title), kInk) +
+         fmt::format("set ylabel {} textcolor rgb '#{}' offset 0.5,0\n", literal(panel.unit), kInk) +
          plot_command(items);
 }
 
@@ -136,7 +111,7 @@ std::string legend_script(const Figure& figure) {
   for (std::size_t i = 0; i < figure.panels.size(); ++i) {
     for (const Plot& plot : plots_of(figure, figure.panels[i], i)) {
       if (plot.title.empty() || !titles.insert(plot.title).second) continue;
-      items.push_back("NaN with " + plot.style + " title " + quoted(plot.title));
+      items.push_back("NaN with " + plot.style + " title " + literal(plot.title));
     }
   }
   if (items.size() < 2) return "";
@@ -153,7 +128,8 @@ std::string legend_script(const Figure& figure) {
 }  // namespace
 
 std::string gnuplot_script(const Figure& figure, PictureFormat format) {
-  std::string script = terminal(figure, format);
+  const int width = kPanelWidth * static_cast<int>(figure.panels.size());
+  std::string script = terminal_script(figure.name, width, kHeight, format);
   for (std::size_t i = 0; i < figure.panels.size(); ++i) {
     script += data_blocks(figure.panels[i], i);
   }

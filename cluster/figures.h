@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "cluster/gnuplot_script.h"
 #include "cluster/training_curves.h"
 
 namespace corridor::cluster {
@@ -32,10 +33,7 @@ struct Figure {
   std::vector<Panel> panels;        // side by side
 };
 
-enum class PictureFormat { kSvg, kPng };
-
-// Draws the figure to standard output. Colours are those of Okabe and Ito (2008), which
-// colour-blind readers can tell apart; the legend stands below the panels.
+// Draws the figure to standard output; the legend stands below the panels.
 std::string gnuplot_script(const Figure& figure, PictureFormat format);
 
 }  // namespace corridor::cluster

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "cluster/gnuplot.h"
+#include "cluster/report_episodes.h"
 #include "cluster/report_page.h"
 #include "cluster/training_figures.h"
 #include "proto/failure.h"
@@ -15,22 +16,31 @@ int report(const ReportOptions& options) {
   for (const auto& root : options.runs) runs.push_back(read_run(root));
   const std::vector<RunGroup> groups = grouped_runs(std::move(runs));
 
-  std::vector<DrawnFigure> figures;
   std::vector<std::pair<std::string, std::string>> files;  // name, content
+  const auto drawn = [&](const auto& figure, const std::string& name, const std::string& caption) {
+    const std::string svg = run_gnuplot(gnuplot_script(figure, PictureFormat::kSvg));
+    files.emplace_back(name + ".svg", svg);
+    files.emplace_back(name + ".png", run_gnuplot(gnuplot_script(figure, PictureFormat::kPng)));
+    return DrawnFigure{caption, svg};
+  };
+  std::vector<DrawnFigure> training, episodes;
   for (const Figure& figure : training_figures(groups)) {
-    figures.push_back({figure, run_gnuplot(gnuplot_script(figure, PictureFormat::kSvg))});
-    files.emplace_back(figure.name + ".svg", figures.back().svg);
-    files.emplace_back(figure.name + ".png",
-                       run_gnuplot(gnuplot_script(figure, PictureFormat::kPng)));
+    training.push_back(drawn(figure, figure.name, figure.caption));
   }
-  files.emplace_back("report.html", report_page(groups, figures));
+  const ReportedEpisodes driven = report_episodes(groups);
+  for (const EpisodeFigure& figure : driven.figures) {
+    episodes.push_back(drawn(figure, "episodes_" + figure.planner, caption_of(figure)));
+  }
+  const std::size_t figures = files.size() / 2;
+  files.emplace_back("report.html", report_page(groups, training, episodes));
 
   const std::filesystem::path out =
       options.out.empty() ? options.runs.front() / "report" : options.out;
   on_disk("create", out, [&] { std::filesystem::create_directories(out); });
   for (const auto& [name, content] : files) write_file(out / name, content);
   fmt::print("{}, with {} figures as SVG and PNG beside it\n", (out / "report.html").string(),
-             figures.size());
+             figures);
+  for (const std::string& note : driven.notes) fmt::print("{}\n", note);
   return 0;
 }
 

@@ -159,13 +159,14 @@ std::string repeating_commands(const RunRecord& run) {
 }
 
 std::string report_page(const std::vector<RunGroup>& groups,
-                        const std::vector<DrawnFigure>& figures) {
+                        const std::vector<DrawnFigure>& training,
+                        const std::vector<DrawnFigure>& episodes) {
   std::vector<std::string> labels;
   for (const RunGroup& group : groups) labels.push_back(group.label);
   std::string body = html_of(runs_table(groups));
 
   body += html_heading(2, "Training");
-  for (const DrawnFigure& drawn : figures) body += html_figure(drawn.svg, drawn.figure.caption);
+  for (const DrawnFigure& drawn : training) body += html_figure(drawn.svg, drawn.caption);
 
   body += html_heading(2, "Evaluation");
   bool evaluated = false;
@@ -179,6 +180,9 @@ std::string report_page(const std::vector<RunGroup>& groups,
                     : html_paragraph(
                           "None yet: corridor evaluate drives the planners on held-out "
                           "traffic.");
+
+  if (!episodes.empty()) body += html_heading(2, "Episodes");
+  for (const DrawnFigure& drawn : episodes) body += html_figure(drawn.svg, drawn.caption);
 
   body += html_heading(2, "Repeating it");
   body += html_paragraph(

@@ -4,20 +4,20 @@
 #include <string>
 #include <vector>
 
-#include "cluster/figures.h"
 #include "cluster/run_record.h"
 
 namespace corridor::cluster {
 
 struct DrawnFigure {
-  Figure figure;
+  std::string caption;
   std::string svg;
 };
 
-// Runs with versions and fingerprints; figures; the tables of each training in each world; the
-// commands that repeat them, for a shell; the settings.
+// Runs with versions and fingerprints; the figures of their training; the tables of each training
+// in each world; single episodes; the commands that repeat it all, for a shell; the settings.
 std::string report_page(const std::vector<RunGroup>& groups,
-                        const std::vector<DrawnFigure>& figures);
+                        const std::vector<DrawnFigure>& training,
+                        const std::vector<DrawnFigure>& episodes);
 
 // The commands that train and evaluate such a run again, one a line.
 std::string repeating_commands(const RunRecord& run);

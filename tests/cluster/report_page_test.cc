@@ -58,11 +58,11 @@ TEST(ReportPage, HoldsRunsFiguresTablesAndSettings) {
   other.config.dqn[0].gamma = 0.5;
   const std::string page =
       report_page({{"paper", {run}}, {"paper (2)", {other}}},
-                  {{{"mop_training", "what it shows", {}, "", "", false, {}}, "<svg id=\"x\"/>"}});
-  for (const char* part :
-       {"corridor: paper, paper (2)", "0123456789abcdef", "<svg id=\"x\"/>", "what it shows",
-        "Sums per 1000 steps", "paper (2), driving in dense", "Table I", "&lt;fast&gt;", "1.15.0",
-        "gamma = 0.97", "mop.gamma = 0.5    # 0.97 in the first", "1,400,832"}) {
+                  {{"what it shows", "<svg id=\"x\"/>"}}, {{"how it drives", "<svg id=\"y\"/>"}});
+  for (const char* part : {"corridor: paper, paper (2)", "0123456789abcdef", "<svg id=\"x\"/>",
+                           "what it shows", "how it drives", "Sums per 1000 steps",
+                           "paper (2), driving in dense", "Table I", "&lt;fast&gt;", "1.15.0",
+                           "gamma = 0.97", "mop.gamma = 0.5    # 0.97 in the first", "1,400,832"}) {
     EXPECT_THAT(page, HasSubstr(part));
   }
   for (const char* foreign : {"http://", "https://", "<script", "src="}) {
@@ -74,7 +74,7 @@ TEST(ReportPage, SaysHowFarATrainingIsThatIsNotComplete) {
   RunRecord run = record(1);
   run.rounds_done = 10;
   run.fingerprint.reset();
-  const std::string page = report_page({{"paper", {run}}}, {});
+  const std::string page = report_page({{"paper", {run}}}, {}, {});
   EXPECT_THAT(page, HasSubstr("5,120 of 1,400,832"));
   EXPECT_THAT(page, HasSubstr("None yet"));
 }

@@ -30,8 +30,10 @@ TEST(Training, TrainsBothPlannersEvaluatesThemAndDrivesTheirEpisodesAgain) {
   for (const json& row : rows) {
     EXPECT_EQ(row.at("steps"), 300) << row;
     const double distance_km = row.at("distance_km").get<double>();
-    EXPECT_NEAR(row.at("mean_speed_kph").get<double>(), distance_km / (300.0 / 3600.0), 1e-6) << row;
-    // What a few thousand steps of training teach is a matter of luck, so only the others' is asked.
+    EXPECT_NEAR(row.at("mean_speed_kph").get<double>(), distance_km / (300.0 / 3600.0), 1e-6)
+        << row;
+    // What a few thousand steps of training teach is a matter of luck, so only the others' is
+    // asked.
     const bool learned = row.at("planner") != "rules" && row.at("planner") != "sumo";
     EXPECT_GT(distance_km, learned ? 0.0 : 2.0) << row;
     for (const char* key : {"planner", "seed", "episodes", "bp_reward_per_1000", "collisions",
@@ -50,7 +52,8 @@ TEST(Training, TrainsBothPlannersEvaluatesThemAndDrivesTheirEpisodesAgain) {
   EXPECT_GT(std::filesystem::file_size(run / "tensorboard" / "events.out.tfevents.000001"), 1000u);
   const CommandResult reported = run_command({kCorridor, "report", run}, kDeadline_s);
   EXPECT_EQ(reported.status, 0) << reported.output;
-  for (const char* file : {"report.html", "mop_training.svg", "bp_training.png"}) {
+  for (const char* file :
+       {"report.html", "mop_training.svg", "bp_training.png", "episodes_hierarchical.png"}) {
     EXPECT_TRUE(std::filesystem::exists(run / "report" / file)) << file;
   }
 

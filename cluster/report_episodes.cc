@@ -1,0 +1,113 @@
+#include "cluster/report_episodes.h"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <chrono>
+#include <tuple>
+
+#include "cluster/local.h"
+#include "proto/failure.h"
+#include "proto/planner_pairs.h"
+#include "proto/run_directory.h"
+#include "proto/subprocess.h"
+
+namespace corridor::cluster {
+namespace {
+
+constexpr std::int64_t kShownSteps = 6;  // of a failed episode, at least
+
+// Where a run was evaluated in traffic as in its training.
+struct Evaluated {
+  RunDirectory directory;
+  std::vector<EvaluationResult> results;
+};
+
+std::optional<Evaluated> evaluated_as_trained(const std::vector<RunGroup>& groups) {
+  for (const RunGroup& group : groups) {
+    for (const RunRecord& run : group.runs) {
+      for (const auto& [world, results] : run.evaluations) {
+        if (!run.worlds_of_training.contains(world) || results.empty()) continue;
+        const auto root = world.empty() ? run.root : run.root / "scenarios" / world;
+        return Evaluated{RunDirectory::open(root), results};
+      }
+    }
+  }
+  return std::nullopt;
+}
+
+std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
+
+EpisodeTrace drive_again(const RunDirectory& directory, const std::string& name) {
+  const std::filesystem::path file = directory.episodes() / (name + ".json");
+  const auto driven = run_subprocess(program_directory() / "corridor-actor",
+                                     {directory.root().string(), "--trace", file.string()}, "",
+                                     std::chrono::minutes(1));
+  if (!driven) throw Failure("{} was not driven again within a minute", file.string());
+  if (driven->status != 0) throw Failure("{}", first_line(driven->errors));
+  return parse_episode_trace(nlohmann::json::parse(driven->output, nullptr, false), file.string());
+}
+
+}  // namespace
+
+std::string ChosenEpisode::name() const { return fmt::format("{}_{}_{}", planner, seed, index); }
+
+std::optional<ChosenEpisode> typical_episode(const std::vector<EvaluationResult>& of_planner) {
+  std::int64_t longest = 0;
+  for (const EvaluationResult& result : of_planner) {
+    for (const EpisodeResult& episode : result.per_episode)
+      longest = std::max(longest, episode.steps);
+  }
+  std::vector<std::tuple<double, std::uint64_t, std::size_t>> whole;
+  for (const EvaluationResult& result : of_planner) {
+    for (std::size_t i = 0; i < result.per_episode.size(); ++i) {
+      const EpisodeResult& episode = result.per_episode[i];
+      if (episode.collisions == 0 && episode.steps == longest)
+        whole.emplace_back(episode.bp_reward, result.seed, i);
+    }
+  }
+  if (whole.empty()) return std::nullopt;
+  std::ranges::sort(whole);
+  const auto& [reward, seed, index] = whole[whole.size() / 2];
+  return ChosenEpisode{of_planner.front().planner, seed, index};
+}
+
+std::optional<ChosenEpisode> failed_episode(const std::vector<EvaluationResult>& of_planner) {
+  for (const EvaluationResult& result : of_planner) {
+    for (std::size_t i = 0; i < result.per_episode.size(); ++i) {
+      const EpisodeResult& episode = result.per_episode[i];
+      if (episode.collisions > 0 && episode.steps >= kShownSteps)
+        return ChosenEpisode{result.planner, result.seed, i};
+    }
+  }
+  return std::nullopt;
+}
+
+ReportedEpisodes report_episodes(const std::vector<RunGroup>& groups) {
+  ReportedEpisodes reported;
+  const std::optional<Evaluated> evaluated = evaluated_as_trained(groups);
+  if (!evaluated) return reported;
+  const auto driven = [&](const std::optional<ChosenEpisode>& chosen) {
+    std::optional<DrivenEpisode> episode;
+    if (!chosen) return episode;
+    try {
+      episode = {chosen->name(), drive_again(evaluated->directory, chosen->name())};
+    } catch (const Failure& failure) {
+      reported.notes.push_back(fmt::format("no picture of {}: {}", chosen->name(), failure.what()));
+    }
+    return episode;
+  };
+  for (const PlannerPair& pair : kPlannerPairs) {
+    std::vector<EvaluationResult> of_planner;
+    for (const EvaluationResult& result : evaluated->results) {
+      if (result.planner == pair.name) of_planner.push_back(result);
+    }
+    if (of_planner.empty()) continue;
+    EpisodeFigure figure{pair.name, driven(typical_episode(of_planner)),
+                         driven(failed_episode(of_planner))};
+    if (figure.typical || figure.failed) reported.figures.push_back(std::move(figure));
+  }
+  return reported;
+}
+
+}  // namespace corridor::cluster
