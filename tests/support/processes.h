@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -22,7 +23,10 @@ inline std::vector<Process> processes_with(const std::string& text) {
     const std::string name = entry.path().filename();
     if (name.find_first_not_of("0123456789") != std::string::npos) continue;
     std::ifstream in(entry.path() / "cmdline", std::ios::binary);
-    std::string line((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
+    // One that ends meanwhile cannot be read: a stream's operator says so by its state.
+    std::ostringstream content;
+    content << in.rdbuf();
+    std::string line = content.str();
     for (char& c : line) {
       if (c == '\0') c = ' ';
     }
