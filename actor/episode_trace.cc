@@ -1,7 +1,6 @@
 #include "actor/episode_trace.h"
 
 #include "actor/recorded_episode.h"
-#include "proto/failure.h"
 
 namespace corridor::actor {
 namespace {
@@ -29,20 +28,13 @@ EpisodeTrace trace_episode(const RunConfig& config, const std::filesystem::path&
   trace.speed_limit_mps = config.road.speed_limit_mps;
 
   Episode episode(config, world);
-  episode.begin(recorded.start);
-  trace.steps.push_back(traced(episode.situation().scene, config.ego));
-  for (int i = 0; i < recorded.steps; ++i) {
-    const bool ended = step_as_recorded(episode, recorded).episode_ended;
-    if (!recorded.driven_by_world())
+  drive_as_recorded(episode, recorded, [&] {
+    if (!trace.steps.empty() && !recorded.driven_by_world())
       trace.steps.back().command = static_cast<int>(episode.situation().previous);
     trace.steps.push_back(traced(episode.situation().scene, config.ego));
-    if (ended) break;
-  }
+  });
   episode.end();
-  if (episode.trajectory_hash() != recorded.trajectory_hash) {
-    throw Failure("{} does not drive again as recorded: it is of another configuration or SUMO",
-                  file.string());
-  }
+  check_as_recorded(episode, recorded);
   const EpisodeSummary& summary = episode.summary();
   trace.bp_reward = summary.bp_reward;
   trace.lane_changes = summary.lane_changes;

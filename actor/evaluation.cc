@@ -118,10 +118,7 @@ Redriven redrive(const RunConfig& config, const std::filesystem::path& file, wor
   RecordedEpisode recorded = read_recorded_episode(config, file);
   recorded.start.fcd_output = fcd_output;
   Episode episode(config, world);
-  episode.begin(recorded.start);
-  for (int i = 0; i < recorded.steps; ++i) {
-    if (step_as_recorded(episode, recorded).episode_ended) break;
-  }
+  drive_as_recorded(episode, recorded, [] {});
   episode.end();
   return {recorded.trajectory_hash, episode.trajectory_hash(), episode.summary()};
 }

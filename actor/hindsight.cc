@@ -81,15 +81,9 @@ class Recording {
   // Drives it whole and fills in what it came to; then again up to `actions` before the collision.
   void drive(int actions, Hindsight& result) {
     std::vector<Scene> seen;
-    episode_.begin(recorded_.start);
-    for (int i = 0; i < recorded_.steps && !episode_.summary().collision; ++i) {
-      seen.push_back(episode_.situation().scene);
-      step_as_recorded(episode_, recorded_);
-    }
-    if (episode_.trajectory_hash() != recorded_.trajectory_hash) {
-      throw Failure("{} does not drive again as recorded: it is of another configuration or SUMO",
-                    recorded_.file.string());
-    }
+    drive_as_recorded(episode_, recorded_, [&] { seen.push_back(episode_.situation().scene); });
+    check_as_recorded(episode_, recorded_);
+    seen.pop_back();  // where the collision has happened
     if (!episode_.summary().collision) {
       throw Failure("{} ends without a collision", recorded_.file.string());
     }

@@ -47,4 +47,21 @@ StepOutcome step_as_recorded(Episode& episode, const RecordedEpisode& recorded) 
   return episode.step(action.command, action.mop_action);
 }
 
+void drive_as_recorded(Episode& episode, const RecordedEpisode& recorded,
+                       const std::function<void()>& seen) {
+  episode.begin(recorded.start);
+  seen();
+  bool ended = false;
+  for (int i = 0; i < recorded.steps && !ended; ++i) {
+    ended = step_as_recorded(episode, recorded).episode_ended;
+    seen();
+  }
+}
+
+void check_as_recorded(const Episode& episode, const RecordedEpisode& recorded) {
+  if (episode.trajectory_hash() == recorded.trajectory_hash) return;
+  throw Failure("{} does not drive again as recorded: it is of another configuration or SUMO",
+                recorded.file.string());
+}
+
 }  // namespace corridor::actor

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <vector>
 
 #include "actor/episode.h"
@@ -26,5 +27,13 @@ RecordedEpisode read_recorded_episode(const RunConfig& config, const std::filesy
 
 // The next step of an episode that has been driven as recorded so far.
 StepOutcome step_as_recorded(Episode& episode, const RecordedEpisode& recorded);
+
+// The whole episode, from its start, and leaves it open. `seen` is called at the start and after
+// each step.
+void drive_as_recorded(Episode& episode, const RecordedEpisode& recorded,
+                       const std::function<void()>& seen);
+
+// Of an episode that was driven so. Throws Failure when its trajectory is not the recorded one.
+void check_as_recorded(const Episode& episode, const RecordedEpisode& recorded);
 
 }  // namespace corridor::actor

@@ -14,7 +14,6 @@ namespace {
 constexpr int kWidth = 1140, kLeft = 150, kRight = 20;
 constexpr int kTitle = 34, kLanesHeight = 110, kSpeedHeight = 110, kAxis = 52, kStripGap = 14;
 
-constexpr std::size_t kInstants = 6;
 constexpr double kBehind_m = 45.0, kAhead_m = 45.0;  // of the ego's front bumper
 constexpr double kKphPerMps = 3.6;
 constexpr std::array kCommands = {"keep", "left", "right"};
@@ -24,7 +23,9 @@ int strip_height(const EpisodeTrace& trace) {
   return static_cast<int>(std::lround(trace.lanes * trace.lane_width_m * pixels_per_m));
 }
 
-std::size_t instants(const EpisodeTrace& trace) { return std::min(kInstants, trace.steps.size()); }
+std::size_t instants(const EpisodeTrace& trace) {
+  return std::min(kShownInstants, trace.steps.size());
+}
 
 // A plot between two heights.
 class Page {
@@ -48,14 +49,14 @@ class Page {
   int height_;
 };
 
-std::string lane_lines(const EpisodeTrace& trace, const std::string& from, const std::string& to) {
+std::string lane_lines(const EpisodeTrace& trace) {
   std::string script;
   for (int line = 0; line <= trace.lanes; ++line) {
     const bool edge = line == 0 || line == trace.lanes;
     script += fmt::format(
-        "set arrow {0} from {1},first {2:.3f} to {3},first {2:.3f} nohead back lc rgb '#{4}' lw 1{5}\n",
-        line + 1, from, line * trace.lane_width_m, to, edge ? "888888" : "bbbbbb",
-        edge ? "" : " dt (10,8)");
+        "set arrow {0} from graph 0,first {1:.3f} to graph 1,first {1:.3f} nohead back lc rgb "
+        "'#{2}' lw 1{3}\n",
+        line + 1, line * trace.lane_width_m, edge ? "888888" : "bbbbbb", edge ? "" : " dt (10,8)");
   }
   return script;
 }
@@ -89,8 +90,8 @@ std::string typical_script(const EpisodeTrace& trace, const Page& page, int top)
          fmt::format("set xrange [0:{:.6g}] noextend\nset yrange [0:{:.6g}]\n", duration_s,
                      road_m) +
          "set border 0\nset format x ''\nset xtics scale 0\n" +
-         fmt::format("set ytics ({}) scale 0\n", ticks) + lane_lines(trace, "graph 0", "graph 1") +
-         "plot $lateral" + line + "unset arrow\nunset label\n" +
+         fmt::format("set ytics ({}) scale 0\n", ticks) + lane_lines(trace) + "plot $lateral" +
+         line + "unset arrow\nunset label\n" +
          page.at(lanes_bottom + kStripGap, lanes_bottom + kStripGap + kSpeedHeight) +
          "set border 3\nset format x '%g'\nset xtics auto scale 0.6\nset ytics auto scale 0.6\n"
          "set xlabel 'time, s'\nset ylabel 'km/h'\nset grid ytics lt 1 lc rgb '#e4e4e4' lw 0.7\n" +
@@ -122,14 +123,13 @@ std::string failed_script(const EpisodeTrace& trace, const Page& page, int top) 
     const double before_s = static_cast<double>(count - 1 - i) * trace.step_s;
     const int strip_top = top + static_cast<int>(i) * (strip_height(trace) + kStripGap);
     const bool last = i + 1 == count;
-    script += page.at(strip_top, strip_top + strip_height(trace)) +
-              lane_lines(trace, "graph 0", "graph 1");
+    script += page.at(strip_top, strip_top + strip_height(trace)) + lane_lines(trace);
     script += last
                   ? "set xtics auto scale 0.6\nset format x '%g'\nset xlabel 'm ahead of the ego'\n"
                   : "set format x ''\nset xtics scale 0\n";
     std::string when = last ? "collision" : fmt::format("{:g} s before", before_s);
-    script +=
-        fmt::format("set label 2 {} at graph -0.015,0.62 right tc rgb '#{}'\n", literal(when), kInk);
+    script += fmt::format("set label 2 {} at graph -0.015,0.62 right tc rgb '#{}'\n", literal(when),
+                          kInk);
     if (step.command) {
       const auto command = static_cast<std::size_t>(*step.command);
       script += fmt::format(

@@ -1,6 +1,7 @@
 // Driven episodes of one arm -> a gnuplot script. Pure.
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 
@@ -8,6 +9,9 @@
 #include "proto/episode_trace.h"
 
 namespace corridor::cluster {
+
+// Of a failed episode, the last of which is the collision; fewer where it has fewer.
+inline constexpr std::size_t kShownInstants = 6;
 
 struct DrivenEpisode {
   std::string name;  // of its file: "hierarchical_1002_3"

@@ -98,7 +98,7 @@ RunDirectory scenario_directory(const RunDirectory& run, const std::filesystem::
     throw Failure("{} has {} lanes, and the networks of {} were trained on {}", scenario.string(),
                   config.road.lanes, run.root().string(), trained.road.lanes);
   }
-  const std::filesystem::path root = run.root() / "scenarios" / scenario.stem();
+  const std::filesystem::path root = RunDirectory::scenarios(run.root()) / scenario.stem();
   const std::string text = to_toml(config);
   if (std::filesystem::exists(root / "config.toml")) {
     RunDirectory directory = RunDirectory::open(root);

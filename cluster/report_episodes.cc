@@ -15,8 +15,6 @@
 namespace corridor::cluster {
 namespace {
 
-constexpr std::int64_t kShownSteps = 6;  // of a failed episode, at least
-
 // Where a run was evaluated in traffic as in its training.
 struct Evaluated {
   RunDirectory directory;
@@ -28,8 +26,7 @@ std::optional<Evaluated> evaluated_as_trained(const std::vector<RunGroup>& group
     for (const RunRecord& run : group.runs) {
       for (const auto& [world, results] : run.evaluations) {
         if (!run.worlds_of_training.contains(world) || results.empty()) continue;
-        const auto root = world.empty() ? run.root : run.root / "scenarios" / world;
-        return Evaluated{RunDirectory::open(root), results};
+        return Evaluated{RunDirectory::open(run.driven_in(world)), results};
       }
     }
   }
@@ -76,7 +73,7 @@ std::optional<ChosenEpisode> failed_episode(const std::vector<EvaluationResult>&
   for (const EvaluationResult& result : of_planner) {
     for (std::size_t i = 0; i < result.per_episode.size(); ++i) {
       const EpisodeResult& episode = result.per_episode[i];
-      if (episode.collisions > 0 && episode.steps >= kShownSteps)
+      if (episode.collisions > 0 && episode.steps >= static_cast<std::int64_t>(kShownInstants))
         return ChosenEpisode{result.planner, result.seed, i};
     }
   }

@@ -148,9 +148,8 @@ std::string repeating_commands(const RunRecord& run) {
     std::string scenario;
     if (!world.empty()) {
       const std::string file = shell_word(world + ".toml");
-      text +=
-          fmt::format("cp {} {}\n",
-                      shell_word((run.root / "scenarios" / world / "config.toml").string()), file);
+      text += fmt::format("cp {} {}\n", shell_word((run.driven_in(world) / "config.toml").string()),
+                          file);
       scenario = " --scenario " + file;
     }
     text += evaluate_commands(results, again, scenario);

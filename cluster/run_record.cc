@@ -60,6 +60,10 @@ ProcessMetrics read_metrics(const RunDirectory& directory, const std::string& pr
 
 }  // namespace
 
+std::filesystem::path RunRecord::driven_in(const std::string& world) const {
+  return world.empty() ? root : RunDirectory::scenarios(root) / world;
+}
+
 RunRecord read_run(const std::filesystem::path& root) {
   const RunDirectory directory = RunDirectory::open(root);
   RunRecord run;
@@ -94,7 +98,8 @@ RunRecord read_run(const std::filesystem::path& root) {
     run.worlds_of_training.insert("");
   }
   std::error_code missing;
-  for (const auto& world : std::filesystem::directory_iterator(root / "scenarios", missing)) {
+  for (const auto& world :
+       std::filesystem::directory_iterator(RunDirectory::scenarios(root), missing)) {
     auto results = read_evaluations(world.path() / "evaluation");
     if (results.empty()) continue;
     const std::string name = world.path().filename();

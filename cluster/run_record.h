@@ -30,6 +30,9 @@ struct RunRecord {
   std::map<std::string, std::vector<EvaluationResult>> evaluations;
   // Those of these worlds that are as in training: "", and scenarios with the same settings.
   std::set<std::string> worlds_of_training;
+
+  // The root of the run directory that was driven in such a world.
+  std::filesystem::path driven_in(const std::string& world) const;
 };
 
 // Throws Failure when there is no run, nothing was trained yet, or a file is damaged.

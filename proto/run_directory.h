@@ -72,6 +72,10 @@ class RunDirectory {
   std::filesystem::path evaluation() const { return root_ / "evaluation"; }
   std::filesystem::path episodes() const { return root_ / "evaluation" / "episodes"; }
   std::filesystem::path hindsight() const { return root_ / "evaluation" / "hindsight"; }
+  // Where a run's networks were driven in other scenarios: a run directory for each, by its name.
+  static std::filesystem::path scenarios(const std::filesystem::path& root) {
+    return root / "scenarios";
+  }
 
  private:
   explicit RunDirectory(std::filesystem::path root) : root_(std::move(root)) {}

@@ -1,6 +1,7 @@
 #include "actor/driving/action.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "proto/failure.h"
 
@@ -15,6 +16,13 @@ int index_of(const MopAction& action) {
   CORRIDOR_CHECK(action.corridor_change >= -1 && action.corridor_change <= 1, "corridor change {}",
                  action.corridor_change);
   return 3 * action.speed_change + action.corridor_change + 1;
+}
+
+int unchanged_speed(const DrivingSettings& settings) {
+  const auto& changes_mps = settings.planner.speed_changes_mps;
+  const auto unchanged = std::ranges::min_element(
+      changes_mps, {}, [](double change_mps) { return std::abs(change_mps); });
+  return static_cast<int>(unchanged - changes_mps.begin());
 }
 
 Target target_for(const MopAction& action, const Ego& ego, const DrivingSettings& settings) {

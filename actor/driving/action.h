@@ -19,6 +19,9 @@ struct MopAction {
 MopAction mop_action(int index);
 int index_of(const MopAction& action);
 
+// The speed change that keeps the set-point as it is, or comes nearest to that.
+int unchanged_speed(const DrivingSettings& settings);
+
 // Where the trajectory is to lead: a corridor of the road and a speed.
 struct Target {
   int corridor = 0;

@@ -1,24 +1,21 @@
 #include "actor/driving/clearance.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 
 #include "actor/driving/prediction.h"
 
 namespace corridor::driving {
+
 void predicted_clearances_m(const Scene& scene, const DrivingSettings& settings,
                             std::span<double> out) {
-  const auto& changes_mps = settings.planner.speed_changes_mps;
-  const auto unchanged = std::ranges::min_element(
-      changes_mps, {}, [](double change_mps) { return std::abs(change_mps); });
-  const int speed_changes[] = {0, static_cast<int>(unchanged - changes_mps.begin())};
+  const int speed_changes[] = {0, unchanged_speed(settings)};
   std::size_t next = 0;
   for (int corridor_change = -1; corridor_change <= 1; ++corridor_change) {
     for (const int speed_change : speed_changes) {
       Ego ego = scene.ego;
       for (int step = 1; step <= settings.planner.clearance_steps; ++step) {
-        ego = after_step(ego, {corridor_change, speed_change}, settings);
+        ego = after_step(ego, MopAction{corridor_change, speed_change}, settings);
         const double time_s = step * settings.step_s;
         double nearest_m = kClearanceMax_m;
         for (Vehicle other : scene.others) {

@@ -7,8 +7,7 @@
 
 namespace corridor::driving {
 
-Ego after_step(const Ego& ego, const MopAction& action, const DrivingSettings& settings) {
-  const Target target = target_for(action, ego, settings);
+Ego after_step(const Ego& ego, const Target& target, const DrivingSettings& settings) {
   const TrajectoryPoint end = Trajectory(ego, target, settings).at(settings.step_s);
   return {end.s_m,
           end.d_m,
@@ -16,6 +15,15 @@ Ego after_step(const Ego& ego, const MopAction& action, const DrivingSettings& s
           end.acceleration_mps2,
           end.lateral_speed_mps,
           target.set_point_mps};
+}
+
+Ego after_step(const Ego& ego, const MopAction& action, const DrivingSettings& settings) {
+  return after_step(ego, target_for(action, ego, settings), settings);
+}
+
+double way_m(double speed_mps, double braking_mps2, double time_s) {
+  return speed_mps >= braking_mps2 * time_s ? (speed_mps - braking_mps2 * time_s / 2) * time_s
+                                            : speed_mps * speed_mps / (2 * braking_mps2);
 }
 
 double separation_m(const Ego& ego, const Vehicle& other, const EgoSettings& size) {

@@ -7,8 +7,12 @@
 
 namespace corridor::driving {
 
-// The ego after it has driven one step towards the action's target.
+// The ego after it has driven one step towards the target; of an action, towards its target.
+Ego after_step(const Ego& ego, const Target& target, const DrivingSettings& settings);
 Ego after_step(const Ego& ego, const MopAction& action, const DrivingSettings& settings);
+
+// How far one gets in that time, braking to a standstill; braking_mps2 0: going on.
+double way_m(double speed_mps, double braking_mps2, double time_s);
 
 // The separation of two rectangles along the road's axes: the larger of the distances along and
 // across the road, < 0 where they overlap.

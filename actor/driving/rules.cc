@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "actor/driving/trajectory.h"
+#include "actor/driving/prediction.h"
 #include "proto/failure.h"
 #include "proto/random.h"
 
@@ -147,8 +147,8 @@ bool RuleBasedMop::keeps_distance(const CorridorGaps& gaps, const Ego& ego,
   if (!survives_hard_braking(gaps.front_gap_m, leader_mps, ego, target)) return false;
 
   // What the step leads to when the leader goes on as it does.
-  const TrajectoryPoint end = Trajectory(ego, target, settings_).at(settings_.step_s);
-  const double gap_m = gaps.front_gap_m + leader_mps * settings_.step_s - (end.s_m - ego.s_m);
+  const Ego next = after_step(ego, target, settings_);
+  const double gap_m = gaps.front_gap_m + leader_mps * settings_.step_s - (next.s_m - ego.s_m);
   const double speed_mps = target.set_point_mps;
   const double closing_mps = std::max(0.0, speed_mps - leader_mps);
   const double wanted_m = headway_m(speed_mps, settings_);
@@ -162,17 +162,12 @@ bool RuleBasedMop::survives_hard_braking(double gap_m, double leader_mps, Ego eg
                                          Target target) const {
   const double step_s = settings_.step_s;
   while (true) {
-    const double leader_way_m = leader_mps > kHardBraking_mps2 * step_s
-                                    ? (leader_mps - kHardBraking_mps2 * step_s / 2) * step_s
-                                    : braking_way_m(leader_mps, kHardBraking_mps2);
-    leader_mps = std::max(0.0, leader_mps - kHardBraking_mps2 * step_s);
-    const TrajectoryPoint end = Trajectory(ego, target, settings_).at(step_s);
-    gap_m += leader_way_m - (end.s_m - ego.s_m);
+    const Ego next = after_step(ego, target, settings_);
+    gap_m += way_m(leader_mps, kHardBraking_mps2, step_s) - (next.s_m - ego.s_m);
     if (gap_m < kStopGap_m) return false;
-    if (end.speed_mps == 0.0) return true;
-    ego.s_m = end.s_m;
-    ego.speed_mps = end.speed_mps;
-    ego.set_point_mps = target.set_point_mps;
+    if (next.speed_mps == 0.0) return true;
+    leader_mps = std::max(0.0, leader_mps - kHardBraking_mps2 * step_s);
+    ego = next;
     target = target_for({0, 0}, ego, settings_);
   }
 }

@@ -1,6 +1,7 @@
 #include "actor/driving/shield.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <limits>
@@ -23,19 +24,6 @@ constexpr double kFollowerBraking_mps2 = 3.0;
 constexpr double kTooClose_m = 2.5;
 constexpr double kEmergencyBraking_mps2 = 9.0;
 
-// To a standstill, from some time on.
-struct Braking {
-  double from_s = 0.0;
-  double braking_mps2 = 0.0;
-};
-
-double way_m(double speed_mps, const Braking& braking, double time_s) {
-  const double before_s = std::min(time_s, braking.from_s);
-  double braking_s = time_s - before_s;
-  if (braking.braking_mps2 > 0.0) braking_s = std::min(braking_s, speed_mps / braking.braking_mps2);
-  return speed_mps * (before_s + braking_s) - braking.braking_mps2 * braking_s * braking_s / 2;
-}
-
 // The middle of the lane that it moves sideways to.
 double destination_m(const Vehicle& other, const Lanes& lanes) {
   if (std::abs(other.lateral_speed_mps) < kSwaying_mps) return other.d_m;
@@ -45,23 +33,33 @@ double destination_m(const Vehicle& other, const Lanes& lanes) {
 }
 
 // Whether it moves sideways to where somebody is close ahead of it, or beside it but further on.
-bool cuts_in_too_close(const Vehicle& other, const Scene& scene, const Lanes& lanes) {
-  const double way_m = destination_m(other, lanes) - other.d_m;
-  if (way_m == 0.0) return false;
+bool cuts_in_too_close(const Vehicle& other, double destination_m, const Scene& scene) {
+  const double sideways_m = destination_m - other.d_m;
+  if (sideways_m == 0.0) return false;
   return std::ranges::any_of(scene.others, [&](const Vehicle& leader) {
     const double gap_m = leader.s_m - leader.length_m - other.s_m;
     const double across_m = leader.d_m - other.d_m;
     return leader.id != other.id && leader.s_m > other.s_m && gap_m < kTooClose_m &&
-           across_m * way_m > 0.0 &&
-           std::abs(across_m) - (leader.width_m + other.width_m) / 2 < std::abs(way_m);
+           across_m * sideways_m > 0.0 &&
+           std::abs(across_m) - (leader.width_m + other.width_m) / 2 < std::abs(sideways_m);
   });
 }
 
-Vehicle later(Vehicle other, const Braking& braking, double time_s, const Lanes& lanes) {
-  const double destination = destination_m(other, lanes);
+// How somebody drives on: sideways to a place across the road, and braking to a standstill from
+// some time on.
+struct Course {
+  double destination_m = 0.0;
+  double braking_from_s = 0.0;
+  double braking_mps2 = 0.0;
+};
+
+Vehicle later(Vehicle other, const Course& course, double time_s) {
   other.d_m = std::clamp(other.d_m + other.lateral_speed_mps * time_s,
-                         std::min(other.d_m, destination), std::max(other.d_m, destination));
-  other.s_m += way_m(other.speed_mps, braking, time_s);
+                         std::min(other.d_m, course.destination_m),
+                         std::max(other.d_m, course.destination_m));
+  const double before_s = std::min(time_s, course.braking_from_s);
+  other.s_m +=
+      other.speed_mps * before_s + way_m(other.speed_mps, course.braking_mps2, time_s - before_s);
   return other;
 }
 
@@ -78,29 +76,27 @@ class Outlook {
   Outlook(const Scene& scene, const DrivingSettings& settings)
       : settings_(settings),
         ego_(scene.ego),
-        steps_(static_cast<std::size_t>(std::ceil(kShieldHorizon_s / settings.step_s))) {
-    const auto& changes_mps = settings.planner.speed_changes_mps;
-    const auto unchanged = std::ranges::min_element(
-        changes_mps, {}, [](double change_mps) { return std::abs(change_mps); });
-    repeated_speed_changes_ = {0, static_cast<int>(unchanged - changes_mps.begin()),
-                               static_cast<int>(changes_mps.size()) - 1};
+        steps_(static_cast<std::size_t>(std::ceil(kShieldHorizon_s / settings.step_s))),
+        repeated_speed_changes_{0, unchanged_speed(settings),
+                                static_cast<int>(settings.planner.speed_changes_mps.size()) - 1} {
     const Lanes lanes(settings);
     for (const Vehicle& other : scene.others) {
       const bool ahead = other.s_m - other.length_m >= ego_.s_m;
       const bool behind = other.s_m <= ego_.s_m - settings.ego.length_m;
       if (behind && overlap_across(ego_, other, settings.ego)) continue;
-      Braking expected;
+      Course expected{destination_m(other, lanes)};
       if (behind) {
-        expected = {kFollowerReaction_s, kFollowerBraking_mps2};
-      } else if (cuts_in_too_close(other, scene, lanes)) {
-        expected = {0.0, kEmergencyBraking_mps2};
+        expected.braking_from_s = kFollowerReaction_s;
+        expected.braking_mps2 = kFollowerBraking_mps2;
+      } else if (cuts_in_too_close(other, expected.destination_m, scene)) {
+        expected.braking_mps2 = kEmergencyBraking_mps2;
       }
-      Braking worst = expected;
+      Course worst = expected;
       if (ahead) worst.braking_mps2 = std::max(worst.braking_mps2, kShieldLeaderBraking_mps2);
       for (std::size_t half = 1; half <= 2 * steps_; ++half) {
         const double time_s = static_cast<double>(half) * settings.step_s / 2;
-        expected_.push_back(later(other, expected, time_s, lanes));
-        worst_.push_back(later(other, worst, time_s, lanes));
+        expected_.push_back(later(other, expected, time_s));
+        worst_.push_back(later(other, worst, time_s));
       }
     }
   }
@@ -124,7 +120,7 @@ class Outlook {
         double least_m = next_m;
         for (std::size_t step = 2; step <= steps_ && least_m > best_m; ++step) {
           const Ego before = ego;
-          ego = after_step(before, {corridor_change, speed_change}, settings_);
+          ego = after_step(before, MopAction{corridor_change, speed_change}, settings_);
           least_m = std::min(least_m, nearest_m(before, ego, step, others));
         }
         best_m = std::max(best_m, least_m);
@@ -151,7 +147,7 @@ class Outlook {
   const DrivingSettings& settings_;
   Ego ego_;
   std::size_t steps_;
-  std::vector<int> repeated_speed_changes_;
+  std::array<int, 3> repeated_speed_changes_;
   Places expected_;
   Places worst_;
 };

@@ -69,5 +69,13 @@ TEST(TargetFor, StaysWhereTheBodyIsOnTheRoad) {
   EXPECT_EQ(target_for({1, 1}, ego, kSettings).corridor, 13);
 }
 
+TEST(UnchangedSpeed, IsTheChangeNearestToNone) {
+  DrivingSettings settings = driving_settings(RunConfig{});
+  EXPECT_EQ(settings.planner.speed_changes_mps[3], 0.0);
+  EXPECT_EQ(unchanged_speed(settings), 3);
+  settings.planner.speed_changes_mps = {-4.0, -0.5, 2.0};
+  EXPECT_EQ(unchanged_speed(settings), 1);
+}
+
 }  // namespace
 }  // namespace corridor::driving
