@@ -24,7 +24,9 @@ void Episode::begin(const world::EpisodeStart& start) {
   summary_.lane_steps.assign(static_cast<std::size_t>(lanes_.lanes()), 0);
   actions_.clear();
   hash_ = {};
-  see(world_.begin(start));
+  const driving::Scene scene = world_.begin(start);
+  reference_ = scene.ego;
+  see(scene, scene.ego);
 }
 
 void Episode::end() { world_.end(); }
@@ -42,8 +44,11 @@ StepOutcome Episode::step(Command command, int mop_action) {
   actions_.push_back(driving::pack(command, mop_action));
   situation_.previous = driving::feasible(command, ego, settings_);
 
-  StepOutcome outcome = advance(world_.step(driving::Trajectory(ego, target, settings_)));
-  outcome.mop_reward = driving::mop_reward(situation_.scene, situation_.gaps, shown, settings_);
+  StepOutcome outcome = advance(world_.step(driving::Trajectory(reference_, target, settings_)));
+  const bool seen_as_it_is = situation_.scene.ego == scene_.ego;
+  outcome.mop_reward = driving::mop_reward(
+      scene_, seen_as_it_is ? situation_.gaps : driving::corridor_gaps(scene_, settings_), shown,
+      settings_);
   outcome.entered_closed = target.corridor != corridor_before && !shown.is_open(target.corridor);
   summary_.mop_reward += outcome.mop_reward;
   return outcome;
@@ -51,16 +56,21 @@ StepOutcome Episode::step(Command command, int mop_action) {
 
 StepOutcome Episode::step_by_world() { return advance(world_.step_by_world()); }
 
-void Episode::take_over() { situation_.scene = world_.take_over(); }
+void Episode::take_over() {
+  scene_ = world_.take_over();
+  situation_.scene = scene_;
+  reference_ = scene_.ego;
+}
 
 StepOutcome Episode::advance(const world::StepResult& result) {
-  const driving::Scene scene_before = std::move(situation_.scene);
+  const driving::Scene scene_before = std::move(scene_);
   const driving::Ego& before = scene_before.ego;
   const int lane_before = lanes_.lane_at(before.d_m);
-  see(result.scene);
+  see(result.scene, result.measured);
+  reference_ = result.reference;
   ++situation_.step;
 
-  const driving::Ego& after = situation_.scene.ego;
+  const driving::Ego& after = scene_.ego;
   const int lane = lanes_.lane_at(after.d_m);
   StepOutcome outcome;
   outcome.bp_reward = driving::bp_reward(lane_before, after, settings_);
@@ -71,22 +81,24 @@ StepOutcome Episode::advance(const world::StepResult& result) {
   summary_.collision = result.collision;
   summary_.lane_changes += outcome.lane_changed;
   summary_.hard_brakes += after.acceleration_mps2 < -kHardBrake_mps2;
-  summary_.bypasses += driving::bypasses(scene_before, situation_.scene, settings_);
+  summary_.bypasses += driving::bypasses(scene_before, scene_, settings_);
   summary_.distance_m += after.s_m - before.s_m;
   ++summary_.lane_steps[static_cast<std::size_t>(lane)];
   outcome.episode_ended = result.collision.has_value() || situation_.step >= step_limit_;
   return outcome;
 }
 
-void Episode::see(driving::Scene scene) {
+void Episode::see(driving::Scene scene, const driving::Ego& measured) {
   const auto& ego = scene.ego;
   for (const double value : {ego.s_m, ego.d_m, ego.speed_mps}) hash_.add_value(value);
   for (const auto& other : scene.others) {
     hash_.add_value(other.id);
     for (const double value : {other.s_m, other.d_m, other.speed_mps}) hash_.add_value(value);
   }
-  situation_.gaps = driving::corridor_gaps(scene, settings_);
-  situation_.scene = std::move(scene);
+  situation_.scene = scene;
+  situation_.scene.ego = measured;
+  situation_.gaps = driving::corridor_gaps(situation_.scene, settings_);
+  scene_ = std::move(scene);
 }
 
 void drive(Episode& episode, const world::EpisodeStart& start, driving::BehaviourPlanner& bp,

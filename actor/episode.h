@@ -46,8 +46,10 @@ class Episode {
   // Leaves the episode, so that the world's files are complete.
   void end();
 
-  // What the planners are to decide on now.
+  // What the planners are to decide on now: as it is, but for errors of measuring the ego.
   const driving::Situation& situation() const { return situation_; }
+  const driving::Scene& scene() const { return scene_; }  // as it is
+  const driving::Ego& reference() const { return reference_; }
 
   // The corridors that the MoP is shown for a command (one that asks for a missing lane: kKeep).
   driving::Window window(driving::Command command) const;
@@ -65,13 +67,15 @@ class Episode {
 
  private:
   StepOutcome advance(const world::StepResult& result);
-  void see(driving::Scene scene);
+  void see(driving::Scene scene, const driving::Ego& measured);
 
   DrivingSettings settings_;
   driving::Lanes lanes_;
   int step_limit_;
   world::World& world_;
   driving::Situation situation_;
+  driving::Scene scene_;
+  driving::Ego reference_;  // where the next trajectory starts
   EpisodeSummary summary_;
   std::vector<std::uint8_t> actions_;
   Hash hash_;

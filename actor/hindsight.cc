@@ -44,7 +44,7 @@ Attempt drive_on(Episode& episode, std::span<const std::uint8_t> first_actions, 
   for (int i = 0; i < steps && !attempt.collided; ++i) {
     const auto index = static_cast<std::size_t>(i);
     if (index >= first_actions.size()) {
-      attempt.choices.push_back(evasive_actions(episode.situation().scene, collision, settings));
+      attempt.choices.push_back(evasive_actions(episode.scene(), collision, settings));
     }
     attempt.collided =
         !step(episode,
@@ -81,7 +81,7 @@ class Recording {
   // Drives it whole and fills in what it came to; then again up to `actions` before the collision.
   void drive(int actions, Hindsight& result) {
     std::vector<Scene> seen;
-    drive_as_recorded(episode_, recorded_, [&] { seen.push_back(episode_.situation().scene); });
+    drive_as_recorded(episode_, recorded_, [&] { seen.push_back(episode_.scene()); });
     check_as_recorded(episode_, recorded_);
     seen.pop_back();  // where the collision has happened
     if (!episode_.summary().collision) {

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "actor/episode.h"
 #include "actor/episode_trace.h"
 #include "actor/evaluation.h"
 #include "actor/hindsight_report.h"
@@ -32,23 +33,32 @@ struct Arguments {
   std::string fcd;
   std::string episode;
   std::string trace;
+  std::string drive;
+  std::uint64_t of_seed = 0;
   std::string look_back;
   actor::HindsightLimits hindsight;
 };
+
+// Those that the pair drives with.
+Networks networks_for(const Arguments& arguments, const PlannerPair& pair, const RunConfig& config,
+                      const RunDirectory& directory) {
+  if (!pair.learned()) return {};
+  const RunDirectory trained =
+      arguments.networks.empty() ? directory : RunDirectory::open(arguments.networks);
+  std::optional<Networks> networks = newest_networks(trained, config);
+  if (!networks) {
+    throw Failure("{} has no checkpoint yet: train on, or evaluate another run",
+                  trained.root().string());
+  }
+  return *std::move(networks);
+}
 
 int evaluate(const Arguments& arguments, const RunConfig& config, const RunDirectory& directory,
              world::World& world) {
   const actor::EvaluationTask task{planner_pair(arguments.planners), arguments.seed,
                                    arguments.steps, arguments.fcd};
-  const RunDirectory trained =
-      arguments.networks.empty() ? directory : RunDirectory::open(arguments.networks);
-  std::optional<Networks> networks = Networks{};
-  if (task.pair.learned()) networks = newest_networks(trained, config);
-  if (!networks) {
-    throw Failure("{} has no checkpoint yet: train on, or evaluate another run",
-                  trained.root().string());
-  }
-  actor::evaluate(config, *networks, task, directory, world, [&](std::int64_t steps) {
+  const Networks networks = networks_for(arguments, task.pair, config, directory);
+  actor::evaluate(config, networks, task, directory, world, [&](std::int64_t steps) {
     std::printf("%lld/%lld\n", static_cast<long long>(steps), static_cast<long long>(task.steps));
     std::fflush(stdout);
     return !stop_requested();
@@ -69,7 +79,23 @@ int redrive(const Arguments& arguments, const RunConfig& config, world::World& w
 }
 
 int trace(const Arguments& arguments, const RunConfig& config, world::World& world) {
-  std::puts(to_json(actor::trace_episode(config, arguments.trace, world)).dump().c_str());
+  std::optional<Networks> networks;
+  if (!arguments.networks.empty()) {
+    networks = newest_networks(RunDirectory::open(arguments.networks), config);
+  }
+  const EpisodeTrace trace =
+      actor::trace_episode(config, networks ? &*networks : nullptr, arguments.trace, world);
+  std::puts(to_json(trace).dump().c_str());
+  return 0;
+}
+
+int drive(const Arguments& arguments, const RunConfig& config, const RunDirectory& directory,
+          world::World& world) {
+  const PlannerPair& pair = planner_pair(arguments.drive);
+  const EpisodeTrace trace = actor::trace_drive(
+      config, networks_for(arguments, pair, config, directory), pair,
+      actor::test_episode_seed(arguments.seed, arguments.of_seed), arguments.steps, world);
+  std::puts(to_json(trace).dump().c_str());
   return 0;
 }
 
@@ -92,6 +118,7 @@ int run(const Arguments& arguments) {
                          time);
   if (!arguments.episode.empty()) return redrive(arguments, config, world);
   if (!arguments.trace.empty()) return trace(arguments, config, world);
+  if (!arguments.drive.empty()) return drive(arguments, config, directory, world);
   if (!arguments.look_back.empty()) return look_back(arguments, config, directory, world);
   if (!arguments.planners.empty()) return evaluate(arguments, config, directory, world);
   if (arguments.index < 0 || arguments.index >= config.run.actors) {
@@ -113,12 +140,15 @@ int main(int argc, char** argv) {
   app.add_option("--seed", arguments.seed, "evaluate, look back: seed of the traffic");
   app.add_option("--steps", arguments.steps, "evaluate: steps to drive");
   app.add_option("--networks", arguments.networks,
-                 "evaluate: run directory whose networks drive, if not RUN");
+                 "evaluate, drive, trace: run directory whose networks drive, if not RUN");
   app.add_option("--fcd", arguments.fcd,
                  "SUMO writes its trajectories here (evaluate: a directory; redrive: a file)");
   app.add_option("--redrive", arguments.episode, "drive this recorded episode again");
   app.add_option("--trace", arguments.trace,
                  "drive this recorded episode again and print every step as JSON");
+  app.add_option("--drive", arguments.drive,
+                 "drive this planner pair in an episode of the seed and print every step as JSON");
+  app.add_option("--of-seed", arguments.of_seed, "drive: which episode of the seed, from 0");
   app.add_option("--look-back", arguments.look_back,
                  "search how this planner pair's collisions in an evaluation could be avoided");
   app.add_option("--actions", arguments.hindsight.actions, "look back: by the last so many actions")

@@ -18,6 +18,11 @@ driving::Command QBehaviourPlanner::decide(const driving::Situation& situation) 
   return static_cast<driving::Command>(values_.greedy(observation_));
 }
 
+std::span<const float> QBehaviourPlanner::values(const driving::Situation& situation) {
+  driving::observe_bp(situation.scene, situation.previous, settings_, observation_);
+  return values_.values(observation_);
+}
+
 QMotionPlanner::QMotionPlanner(const RunConfig& config, std::span<const float> parameters)
     : settings_(driving_settings(config)),
       values_(config.phase(Phase::kMop), config.shape(Phase::kMop), parameters),
@@ -26,6 +31,12 @@ QMotionPlanner::QMotionPlanner(const RunConfig& config, std::span<const float> p
 int QMotionPlanner::decide(const driving::Situation& situation, const driving::Window& window) {
   driving::observe_mop(situation.scene, situation.gaps, window, settings_, observation_);
   return values_.greedy(observation_);
+}
+
+std::span<const float> QMotionPlanner::values(const driving::Situation& situation,
+                                              const driving::Window& window) {
+  driving::observe_mop(situation.scene, situation.gaps, window, settings_, observation_);
+  return values_.values(observation_);
 }
 
 std::unique_ptr<driving::BehaviourPlanner> make_behaviour_planner(const PlannerPair& pair,

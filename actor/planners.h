@@ -20,6 +20,8 @@ class QBehaviourPlanner : public driving::BehaviourPlanner {
   QBehaviourPlanner(const RunConfig& config, std::span<const float> parameters);
   void begin_episode(std::uint64_t) override {}
   driving::Command decide(const driving::Situation& situation) override;
+  // Of the commands; valid until the next call.
+  std::span<const float> values(const driving::Situation& situation);
 
  private:
   DrivingSettings settings_;
@@ -31,6 +33,8 @@ class QMotionPlanner : public driving::MotionPlanner {
  public:
   QMotionPlanner(const RunConfig& config, std::span<const float> parameters);
   int decide(const driving::Situation& situation, const driving::Window& window) override;
+  // Of the MoP's actions; valid until the next call.
+  std::span<const float> values(const driving::Situation& situation, const driving::Window& window);
 
  private:
   DrivingSettings settings_;

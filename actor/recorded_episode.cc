@@ -13,6 +13,7 @@ RecordedEpisode read_recorded_episode(const RunConfig& config, const std::filesy
   RecordedEpisode recorded;
   recorded.file = file;
   try {
+    recorded.planner = record.at("planner").get<std::string>();
     recorded.start.seed = whole_number<std::uint64_t>(record.at("episode_seed"));
     if (record.at("driven_by_world").get<bool>()) {
       recorded.start.driver = world::EgoDriver::kWorld;

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <string>
 #include <vector>
 
 #include "actor/episode.h"
@@ -14,6 +15,7 @@ namespace corridor::actor {
 
 struct RecordedEpisode {
   std::filesystem::path file;
+  std::string planner;
   world::EpisodeStart start;
   std::vector<std::uint8_t> actions;  // one a step; none where the world drives
   int steps = 0;

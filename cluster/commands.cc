@@ -4,6 +4,7 @@
 
 #include "cluster/check.h"
 #include "cluster/checkpoint.h"
+#include "cluster/drive.h"
 #include "cluster/evaluation.h"
 #include "cluster/experiment.h"
 #include "cluster/export.h"
@@ -14,6 +15,7 @@
 #include "proto/failure.h"
 #include "proto/planner_pairs.h"
 #include "proto/program.h"
+#include "proto/worlds.h"
 
 namespace corridor::cluster {
 namespace {
@@ -27,8 +29,10 @@ struct Arguments {
   HindsightOptions hindsight;
   ExperimentOptions experiment;
   ReportOptions report;
+  DriveOptions drive;
   std::filesystem::path run;
   std::filesystem::path scenario;
+  std::string world;
   std::string episode;
   std::filesystem::path exported;
 };
@@ -54,11 +58,50 @@ void declare_run(CLI::App& app, std::filesystem::path& run) {
   app.add_option("DIR", run, "run directory")->required();
 }
 
+// The world to drive in, in `into` once `settle_world` was called.
+void declare_world(CLI::App& app, Arguments& arguments, EvaluationWorld& into) {
+  app.add_option("--scenario", into.scenario,
+                 "drive in this scenario's world (TOML); the run's own unless given");
+  std::string worlds = "what the ego drives with (dynamics.world):";
+  for (const WorldKind& world : kWorlds) {
+    worlds += fmt::format("\n{} ({})", world.name, world.meaning);
+  }
+  app.add_option("--world", arguments.world, worlds);
+  declare_settings(app, into.settings);
+}
+
+EvaluationWorld settle_world(const Arguments& arguments, EvaluationWorld world) {
+  if (!arguments.world.empty()) {
+    world.settings.insert(world.settings.begin(), "dynamics.world=" + arguments.world);
+  }
+  return world;
+}
+
+void declare_drive(CLI::App& app, Arguments& arguments) {
+  DriveOptions& options = arguments.drive;
+  declare_run(app, options.run);
+  declare_world(app, arguments, options.world);
+  app.add_option("--planner", options.planner, "who drives, as in evaluate")->capture_default_str();
+  app.add_option("--seed", options.seed, "of the traffic (the first of evaluation.seeds)")
+      ->check(CLI::NonNegativeNumber);
+  app.add_option("--number", options.number, "which episode of that seed")->capture_default_str();
+  app.add_option("--episode", options.episode, "a recorded one: a file, or a name as in redrive");
+  app.add_flag("--collisions", options.collisions, "the planner's collisions in its evaluations");
+  app.add_option("--most", options.most, "of them, at most")
+      ->capture_default_str()
+      ->check(CLI::PositiveNumber);
+  app.add_option("--from", options.from_s, "seconds after the episode's start")
+      ->capture_default_str();
+  app.add_option("--seconds", options.seconds, "to show")->capture_default_str();
+  app.add_option("--interval", options.interval_s, "seconds between the contact sheet's pictures")
+      ->capture_default_str();
+  app.add_option("--out", options.out, "folder to write to (the world's drives/)");
+}
+
 void declare_evaluate(CLI::App& app, Arguments& arguments) {
   EvaluateOptions& options = arguments.evaluate;
   declare_run(app, options.run);
-  app.add_option("--scenario", options.scenario,
-                 "evaluate in this scenario's world (TOML); the run's own unless given");
+  declare_world(app, arguments, options.world);
   std::string planners = "planner pairs, separated by commas; those marked * unless given:";
   for (const PlannerPair& pair : kPlannerPairs) {
     planners += fmt::format("\n{}{} ({})", pair.name, pair.by_default ? "*" : "", pair.meaning);
@@ -127,9 +170,26 @@ const Command kCommands[] = {
     {"evaluate", "Drive planners greedily on held-out traffic and print the paper's table",
      "corridor evaluate runs/first\n"
      "  corridor evaluate runs/first --scenario scenarios/dense.toml\n"
+     "  corridor evaluate runs/first --world slip --set dynamics.friction=0.5\n"
      "  corridor evaluate runs/first --planners hierarchical,sumo --seeds 1002,1003 --json "
      "out.json",
-     declare_evaluate, [](const Arguments& a) { return evaluate(a.evaluate); }},
+     declare_evaluate,
+     [](const Arguments& a) {
+       EvaluateOptions options = a.evaluate;
+       options.world = settle_world(a, options.world);
+       return evaluate(options);
+     }},
+    {"drive", "Drive an episode and show it: a film, a contact sheet and a player",
+     "corridor drive runs/first --seed 1002\n"
+     "  corridor drive runs/first --scenario scenarios/paper_substeps.toml --world slip\n"
+     "  corridor drive runs/first --episode hierarchical_1002_3 --from 100 --seconds 20\n"
+     "  corridor drive runs/first --planner rules --collisions",
+     declare_drive,
+     [](const Arguments& a) {
+       DriveOptions options = a.drive;
+       options.world = settle_world(a, options.world);
+       return drive(options);
+     }},
     {"experiment", "Train and evaluate everything that an experiment file names, and go on with it",
      "corridor experiment scenarios/experiments/reduced.toml --run runs/reduced",
      [](CLI::App& app, Arguments& a) {

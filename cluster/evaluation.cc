@@ -10,6 +10,7 @@
 #include "cluster/checkpoint.h"
 #include "cluster/evaluation_result.h"
 #include "cluster/local.h"
+#include "cluster/manifest.h"
 #include "cluster/plan.h"
 #include "cluster/results_tables.h"
 #include "cluster/step_progress.h"
@@ -66,6 +67,12 @@ void check_can_drive(const std::string& planner, const RunDirectory& directory,
                      const RunConfig& config) {
   const PlannerPair& pair = planner_pair(planner);
   const bool learned_bp = pair.bp == BpKind::kLearned;
+  if (pair.world_drives() && config.dynamics.world != "kinematic") {
+    throw Failure(
+        "planner '{}' drives without dynamics of its own: choose others for dynamics.world = "
+        "\"{}\"",
+        planner, config.dynamics.world);
+  }
   if (!pair.learned()) return;
   if (std::filesystem::exists(directory.networks())) return;
   const std::optional<Checkpoint> checkpoint = newest_checkpoint(directory);
@@ -84,27 +91,41 @@ void check_can_drive(const std::string& planner, const RunDirectory& directory,
   }
 }
 
-RunDirectory scenario_directory(const RunDirectory& run, const std::filesystem::path& scenario) {
+std::string EvaluationWorld::name(const std::string& own) const {
+  std::string text = scenario.empty() ? own : scenario.stem().string();
+  for (const std::string& setting : settings) {
+    text += fmt::format("+{}", setting.substr(setting.find('.') + 1));
+  }
+  std::ranges::replace_if(
+      text, [](char c) { return c == '/' || c == ',' || c == '"'; }, '_');
+  return text;
+}
+
+RunDirectory world_directory(const RunDirectory& run, const EvaluationWorld& world) {
   const RunConfig trained = load_run_config(run.config());
-  const RunConfig world = load_run_config(scenario);
+  const RunConfig scenario =
+      load_run_config(world.scenario.empty() ? run.config() : world.scenario, world.settings);
   RunConfig config = trained;
-  config.road = world.road;
-  config.traffic = world.traffic;
-  config.simulation = world.simulation;
-  config.ego = world.ego;
-  config.bp_reward = world.bp_reward;
-  config.evaluation = world.evaluation;
+  config.road = scenario.road;
+  config.traffic = scenario.traffic;
+  config.simulation = scenario.simulation;
+  config.ego = scenario.ego;
+  config.dynamics = scenario.dynamics;
+  config.planner.corridor_change_s = scenario.planner.corridor_change_s;
+  config.bp_reward = scenario.bp_reward;
+  config.evaluation = scenario.evaluation;
+  const std::string name = world.name(world.scenario.empty() ? scenario_name(run) : "");
   if (config.road.lanes != trained.road.lanes) {
-    throw Failure("{} has {} lanes, and the networks of {} were trained on {}", scenario.string(),
+    throw Failure("{} has {} lanes, and the networks of {} were trained on {}", name,
                   config.road.lanes, run.root().string(), trained.road.lanes);
   }
-  const std::filesystem::path root = RunDirectory::scenarios(run.root()) / scenario.stem();
+  const std::filesystem::path root = RunDirectory::scenarios(run.root()) / name;
   const std::string text = to_toml(config);
   if (std::filesystem::exists(root / "config.toml")) {
     RunDirectory directory = RunDirectory::open(root);
-    if (read_file(directory.config()) == text) return directory;
+    if (to_toml(load_run_config(directory.config())) == text) return directory;
     throw Failure("{} holds what was driven with other settings than {}'s: move it away",
-                  root.string(), scenario.string());
+                  root.string(), name);
   }
   // config.toml is written last: without it, somebody was stopped here.
   on_disk("remove", root, [&] { std::filesystem::remove_all(root); });
@@ -118,8 +139,8 @@ RunDirectory scenario_directory(const RunDirectory& run, const std::filesystem::
 
 int evaluate(const EvaluateOptions& options) {
   const RunDirectory trained = RunDirectory::open(options.run);
-  const RunDirectory directory =
-      options.scenario.empty() ? trained : scenario_directory(trained, options.scenario);
+  const bool own_world = options.world.scenario.empty() && options.world.settings.empty();
+  const RunDirectory directory = own_world ? trained : world_directory(trained, options.world);
   const RunConfig config = load_run_config(directory.config());
   const std::int64_t steps = options.steps.value_or(config.evaluation.steps);
   if (steps < 1) throw Failure("--steps {}: at least 1 is needed", steps);

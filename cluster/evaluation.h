@@ -13,9 +13,18 @@
 
 namespace corridor::cluster {
 
+// A world to drive in: a scenario's, with changes.
+struct EvaluationWorld {
+  std::filesystem::path scenario = {};     // empty: the run's own
+  std::vector<std::string> settings = {};  // table.key=value, over the scenario
+
+  // "paper", "paper+world=slip+friction=0.5"; `own` is the name of the run's scenario.
+  std::string name(const std::string& own) const;
+};
+
 struct EvaluateOptions {
   std::filesystem::path run = {};
-  std::filesystem::path scenario = {};     // empty: the run's own
+  EvaluationWorld world = {};              // with neither: the run's own, in its own directory
   std::vector<std::string> planners = {};  // empty: all
   std::optional<std::int64_t> steps =
       {};                                 // for each planner and seed = {}; else [evaluation] steps
@@ -25,11 +34,11 @@ struct EvaluateOptions {
   std::filesystem::path fcd = {};         // directory of SUMO's trajectories = {}; empty: none
 };
 
-// Where a run's planners are evaluated in another scenario, RUN/scenarios/<name of its file>: a run
-// directory without checkpoints. Road, traffic, simulation, ego, BP reward and [evaluation] are the
-// scenario's, all else the run's. Throws Failure when the run's networks do not fit that world, or
-// when the directory holds what was driven with other settings.
-RunDirectory scenario_directory(const RunDirectory& run, const std::filesystem::path& scenario);
+// Where a run's planners are evaluated in another world, RUN/scenarios/<its name>: a run directory
+// without checkpoints. Road, traffic, simulation, ego, dynamics, planner.corridor_change_s, BP
+// reward and [evaluation] are the world's, all else the run's. Throws Failure when the run's
+// networks do not fit that world, or when the directory holds what was driven with other settings.
+RunDirectory world_directory(const RunDirectory& run, const EvaluationWorld& world);
 
 // Drives each planner on the test episodes of each seed and prints the table. Returns the exit
 // status: 0, or 128 + signal when stopped by one. Throws Failure for planners that there are not or

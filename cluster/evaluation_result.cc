@@ -1,5 +1,6 @@
 #include "cluster/evaluation_result.h"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "proto/failure.h"
@@ -99,6 +100,18 @@ nlohmann::ordered_json evaluation_json(const std::vector<EvaluationResult>& resu
                     {"distance_km", result.distance_km}});
   }
   return list;
+}
+
+std::vector<EvaluationResult> read_evaluations(const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> files;
+  std::error_code missing;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, missing)) {
+    if (entry.is_regular_file() && entry.path().extension() == ".json") files.push_back(entry);
+  }
+  std::sort(files.begin(), files.end());
+  std::vector<EvaluationResult> results;
+  for (const auto& file : files) results.push_back(read_evaluation(file));
+  return results;
 }
 
 }  // namespace corridor::cluster

@@ -11,7 +11,7 @@
 namespace corridor::cluster {
 
 inline constexpr std::array kCollisionKinds = {"rear_ended", "rear_ending", "side_by_other",
-                                               "side_by_ego"};
+                                               "side_by_ego", "off_road"};
 
 struct EpisodeResult {
   std::int64_t steps = 0;
@@ -48,6 +48,8 @@ struct EvaluationResult {
 // planner pair, or no episode.
 EvaluationResult parse_evaluation(const nlohmann::json& json, const std::string& name);
 EvaluationResult read_evaluation(const std::filesystem::path& file);
+// All of a run, by file name; none where there is no such folder.
+std::vector<EvaluationResult> read_evaluations(const std::filesystem::path& folder);
 
 // A list with one object a result: all fields but the episodes.
 nlohmann::ordered_json evaluation_json(const std::vector<EvaluationResult>& results);

@@ -43,7 +43,7 @@ struct Run {
 // One evaluation of one run's networks in one scenario.
 struct Evaluation {
   const Run* run = nullptr;
-  fs::path scenario;
+  std::string world;   // its name
   RunDirectory place;  // of that scenario
   EvaluationJob job;
 
@@ -68,13 +68,16 @@ std::vector<Run> runs_of(const Experiment& experiment, const fs::path& directory
 std::vector<Evaluation> evaluations_of(const Experiment& experiment, const std::vector<Run>& runs) {
   std::vector<Evaluation> evaluations;
   for (const Run& run : runs) {
-    for (const fs::path& scenario : run.training->evaluate_in) {
-      const RunDirectory place = scenario_directory(RunDirectory::open(run.root), scenario);
+    for (const EvaluationWorld& world : run.training->evaluate_in) {
+      const RunDirectory place = world_directory(RunDirectory::open(run.root), world);
+      const bool kinematic = load_run_config(place.config()).dynamics.world == "kinematic";
       for (const std::string& planner : run.training->planners) {
-        if (!planner_pair(planner).learned() && !run.is_first()) continue;
+        const PlannerPair& pair = planner_pair(planner);
+        if (!pair.learned() && !run.is_first()) continue;
+        if (pair.world_drives() && !kinematic) continue;
         for (const std::uint64_t seed : experiment.evaluation_seeds) {
           evaluations.push_back(
-              {&run, scenario, place, {planner, seed, experiment.evaluation_steps}});
+              {&run, world.name(""), place, {planner, seed, experiment.evaluation_steps}});
         }
       }
     }
@@ -169,8 +172,7 @@ int evaluate_all(const std::vector<Evaluation>& evaluations, const fs::path& dir
   for (const Evaluation& evaluation : evaluations) {
     const EvaluationJob& job = evaluation.job;
     const std::string name =
-        fmt::format("{}-{}-{}-{}", evaluation.run->name(), evaluation.scenario.stem().string(),
-                    job.planner, job.seed);
+        fmt::format("{}-{}-{}-{}", evaluation.run->name(), evaluation.world, job.planner, job.seed);
     const fs::path log = directory / "log" / (name + ".log");
     const bool done = is_done(evaluation);
     tasks.push_back({name, job.steps, done ? job.steps : 0, log, parse_step_count});
@@ -187,10 +189,10 @@ int evaluate_all(const std::vector<Evaluation>& evaluations, const fs::path& dir
 
 // All results of one training in one scenario.
 std::vector<SeedResult> results_in(const std::vector<Evaluation>& evaluations,
-                                   const TrainingArm& training, const fs::path& scenario) {
+                                   const TrainingArm& training, const std::string& world) {
   std::vector<SeedResult> results;
   for (const Evaluation& evaluation : evaluations) {
-    if (evaluation.run->training != &training || evaluation.scenario != scenario) continue;
+    if (evaluation.run->training != &training || evaluation.world != world) continue;
     results.push_back({evaluation.run->seed, read_evaluation(evaluation.file())});
   }
   return results;
@@ -218,18 +220,17 @@ void write_results(const Experiment& experiment, const std::vector<Run>& runs,
                   options.file.filename().string(), grouped(experiment.evaluation_steps));
   nlohmann::ordered_json json = nlohmann::ordered_json::array();
   for (const TrainingArm& training : experiment.trainings) {
-    for (const fs::path& scenario : training.evaluate_in) {
-      const std::vector<SeedResult> results = results_in(evaluations, training, scenario);
+    for (const EvaluationWorld& evaluated : training.evaluate_in) {
+      const std::string world = evaluated.name("");
+      const std::vector<SeedResult> results = results_in(evaluations, training, world);
       const std::vector<Table> tables = results_tables(arms_of(results));
-      const std::string title =
-          fmt::format("{}, evaluated in {}", training.name, scenario.stem().string());
+      const std::string title = fmt::format("{}, evaluated in {}", training.name, world);
       text += fmt::format("\n## {}\n", title);
       for (const Table& table : tables) text += fmt::format("\n{}", markdown_of(table));
       fmt::print("\n{}\n{}", title, text_of(tables.front()));
       for (const SeedResult& result : results) {
-        nlohmann::ordered_json entry = {{"training", training.name},
-                                        {"training_seed", result.training_seed},
-                                        {"scenario", scenario.stem().string()}};
+        nlohmann::ordered_json entry = {
+            {"training", training.name}, {"training_seed", result.training_seed}, {"world", world}};
         entry.update(evaluation_json({result.result}).front());
         json.push_back(std::move(entry));
       }

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
+#include <sstream>
 
 #include "cluster/text.h"
 #include "proto/failure.h"
@@ -93,6 +94,16 @@ void check_planners(const std::vector<std::string>& planners) {
   for (const std::string& planner : planners) planner_pair(planner);
 }
 
+// A scenario's file, and settings behind it, separated by spaces.
+EvaluationWorld parse_world(const std::string& text, const std::filesystem::path& folder) {
+  std::istringstream words(text);
+  std::string file;
+  words >> file;
+  EvaluationWorld world{folder / file};
+  for (std::string setting; words >> setting;) world.settings.push_back(setting);
+  return world;
+}
+
 TrainingArm parse_training(Table& table, const std::filesystem::path& folder,
                            const std::vector<std::string>& planners,
                            const std::vector<std::uint64_t>& training_seeds) {
@@ -107,8 +118,8 @@ TrainingArm parse_training(Table& table, const std::filesystem::path& folder,
   training.settings =
       table.optional<std::vector<std::string>>("settings").value_or(std::vector<std::string>{});
   training.from = table.optional<std::string>("from").value_or("");
-  for (const auto& file : table.required<std::vector<std::string>>("evaluate_in")) {
-    training.evaluate_in.push_back(folder / file);
+  for (const auto& world : table.required<std::vector<std::string>>("evaluate_in")) {
+    training.evaluate_in.push_back(parse_world(world, folder));
   }
   training.planners = table.optional<std::vector<std::string>>("planners").value_or(planners);
   training.training_seeds =
@@ -118,13 +129,12 @@ TrainingArm parse_training(Table& table, const std::filesystem::path& folder,
   check_at(table.place(), [&] {
     check_planners(training.planners);
     load_run_config(training.scenario, training.settings);
-    for (const auto& scenario : training.evaluate_in) load_run_config(scenario);
+    for (const auto& world : training.evaluate_in) load_run_config(world.scenario, world.settings);
   });
-  std::set<std::string> stems;
-  for (const auto& scenario : training.evaluate_in) {
-    if (stems.insert(scenario.stem()).second) continue;
-    throw Failure("{}: evaluate_in has two scenarios of the name {}", table.place(),
-                  scenario.stem().string());
+  std::set<std::string> names;
+  for (const auto& world : training.evaluate_in) {
+    if (names.insert(world.name("")).second) continue;
+    throw Failure("{}: evaluate_in has two worlds of the name {}", table.place(), world.name(""));
   }
   return training;
 }

@@ -10,7 +10,7 @@
 //   scenario = "../paper.toml"              # to train in; files are relative to this one
 //   settings = ["mop.risk_weight=0"]        # over the scenario; none unless given
 //   from = "other"                          # begins with the networks of that training, same seed
-//   evaluate_in = ["../paper.toml", "../dense.toml"]
+//   evaluate_in = ["../paper.toml", "../paper.toml dynamics.world=webots"]    # settings over it
 //   planners = ["hierarchical"]             # planners and training_seeds: for this one only
 #pragma once
 
@@ -19,6 +19,8 @@
 #include <string>
 #include <vector>
 
+#include "cluster/evaluation.h"
+
 namespace corridor::cluster {
 
 struct TrainingArm {
@@ -26,7 +28,7 @@ struct TrainingArm {
   std::filesystem::path scenario;
   std::vector<std::string> settings;
   std::string from;  // name of an earlier one; empty: begins with random networks
-  std::vector<std::filesystem::path> evaluate_in;
+  std::vector<EvaluationWorld> evaluate_in;
   std::vector<std::string> planners;
   std::vector<std::uint64_t> training_seeds;
 };

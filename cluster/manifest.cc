@@ -108,4 +108,14 @@ RunConfig config_at_start(const RunDirectory& directory) {
   return parse_run_config(manifest["config"].get<std::string>(), file);
 }
 
+std::string scenario_name(const RunDirectory& directory) {
+  const std::string file = directory.manifest().string();
+  const auto manifest = nlohmann::json::parse(read_file(file), nullptr, false);
+  if (!manifest.is_object() || !manifest.contains("scenario") ||
+      !manifest["scenario"].is_string()) {
+    throw Failure("{} is damaged: it does not say of which scenario the run is", file);
+  }
+  return std::filesystem::path(manifest["scenario"].get<std::string>()).stem();
+}
+
 }  // namespace corridor::cluster

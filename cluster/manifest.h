@@ -19,6 +19,9 @@ std::string draw_run_id();
 nlohmann::ordered_json describe_run(const std::string& run_id, const RunConfig& config,
                                     const std::filesystem::path& scenario);
 
+// The name of the scenario's file, "paper". Throws Failure when the manifest does not say.
+std::string scenario_name(const RunDirectory& directory);
+
 // The settings with which the run began, whatever its config.toml says now. Throws Failure.
 RunConfig config_at_start(const RunDirectory& directory);
 

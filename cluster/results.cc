@@ -91,7 +91,8 @@ class ArmData {
     set(Quantity::kCollisions, rate(arm.collisions, thousands));
     set(Quantity::kCollisionsPerKm, rate(arm.collisions, arm.distance_km));
     constexpr std::array kKinds = {Quantity::kRearEnded, Quantity::kRearEnding,
-                                   Quantity::kSideByOther, Quantity::kSideByEgo};
+                                   Quantity::kSideByOther, Quantity::kSideByEgo,
+                                   Quantity::kOffRoad};
     for (std::size_t kind = 0; kind < kCollisionKinds.size(); ++kind) {
       set(kKinds[kind], rate(arm.collisions_by_kind[kind], thousands));
     }

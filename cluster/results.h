@@ -43,14 +43,15 @@ enum class Quantity {
   kRearEnding,
   kSideByOther,
   kSideByEgo,
+  kOffRoad,
   kLaneChanges,
   kSpeed,
   kHardBrakes,
   kCollisionsPerKm,
   kLaneChangesPerKm,
-  kBypassesPerKm,
+  kBypassesPerKm,  // the last one
 };
-inline constexpr std::size_t kQuantities = 12;
+inline constexpr std::size_t kQuantities = static_cast<std::size_t>(Quantity::kBypassesPerKm) + 1;
 
 // By quantity, sums per 1000 steps but for speed (km/h) and what is named per km.
 using Estimates = std::array<Estimate, kQuantities>;

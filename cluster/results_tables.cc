@@ -1,5 +1,6 @@
 #include "cluster/results_tables.h"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -73,6 +74,13 @@ Table kinds_table(const std::vector<Arm>& arms) {
                           cell(arm[Quantity::kRearEnding], 2),
                           cell(arm[Quantity::kSideByOther], 2),
                           cell(arm[Quantity::kSideByEgo], 2)});
+  }
+  // Only a car with dynamics of its own can leave the road.
+  if (std::ranges::any_of(arms, [](const Arm& a) { return a[Quantity::kOffRoad].value > 0.0; })) {
+    table.columns.push_back("off the road");
+    for (std::size_t i = 0; i < arms.size(); ++i) {
+      table.rows[i].push_back(cell(arms[i][Quantity::kOffRoad], 2));
+    }
   }
   return table;
 }

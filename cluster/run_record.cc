@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cluster/checkpoint.h"
+#include "cluster/manifest.h"
 #include "cluster/plan.h"
 #include "cluster/training.h"
 #include "proto/failure.h"
@@ -33,18 +34,6 @@ std::vector<std::pair<std::string, std::string>> made_with(const nlohmann::order
   return result;
 }
 
-std::vector<EvaluationResult> read_evaluations(const std::filesystem::path& folder) {
-  std::vector<std::filesystem::path> files;
-  std::error_code missing;
-  for (const auto& entry : std::filesystem::directory_iterator(folder, missing)) {
-    if (entry.is_regular_file() && entry.path().extension() == ".json") files.push_back(entry);
-  }
-  std::sort(files.begin(), files.end());
-  std::vector<EvaluationResult> results;
-  for (const auto& file : files) results.push_back(read_evaluation(file));
-  return results;
-}
-
 // Or in what does not matter for the result.
 bool differ_in_seed_only(const RunConfig& a, const RunConfig& b) {
   return std::ranges::none_of(changed_keys(a, b), [](const ChangedKey& key) {
@@ -69,15 +58,8 @@ RunRecord read_run(const std::filesystem::path& root) {
   RunRecord run;
   run.root = root;
   run.config = load_run_config(directory.config());
-  const std::string manifest_file = directory.manifest().string();
-  const nlohmann::ordered_json manifest =
-      nlohmann::ordered_json::parse(read_file(manifest_file), nullptr, false);
-  if (!manifest.is_object() || !manifest.contains("scenario") ||
-      !manifest["scenario"].is_string()) {
-    throw Failure("{} is damaged: it does not say of which scenario the run is", manifest_file);
-  }
-  run.scenario = std::filesystem::path(manifest["scenario"].get<std::string>()).stem();
-  run.made_with = made_with(manifest);
+  run.scenario = scenario_name(directory);
+  run.made_with = made_with(nlohmann::ordered_json::parse(read_file(directory.manifest())));
 
   for (int i = 0; i < run.config.run.actors; ++i) {
     run.actors.push_back(read_metrics(directory, actor_name(i)));

@@ -53,6 +53,22 @@ void check_road(const RunConfig& config) {
           road.length_m, std::ceil(needed_m));
 }
 
+// SUMO's clock counts in milliseconds, and the ego's controller in periods (actor/world).
+void check_clock(const RunConfig& config) {
+  const SimulationSettings& simulation = config.simulation;
+  const DynamicsSettings& dynamics = config.dynamics;
+  require(is_multiple(simulation.substep_s(), 0.001),
+          "simulation.step_s = {} in simulation.substeps = {} is no whole number of milliseconds",
+          simulation.step_s, simulation.substeps);
+  require(is_multiple(dynamics.actuation_delay_s, kControlPeriod_s),
+          "dynamics.actuation_delay_s = {} is no multiple of {}", dynamics.actuation_delay_s,
+          kControlPeriod_s);
+  require(dynamics.world == "kinematic" || is_multiple(simulation.substep_s(), kControlPeriod_s),
+          "simulation.step_s = {} in simulation.substeps = {} is no multiple of {}, as "
+          "dynamics.world = \"{}\" needs",
+          simulation.step_s, simulation.substeps, kControlPeriod_s, dynamics.world);
+}
+
 void check_traffic(const TrafficSettings& traffic) {
   require_ordered("traffic.vehicles_min", traffic.vehicles_min, "traffic.vehicles_max",
                   traffic.vehicles_max);
@@ -109,11 +125,11 @@ void check_objects(const RunConfig& config) {
       "{:.2f} do",
       traffic.object_width_m, std::max(0.0, room_m - TrafficSettings::kObjectMargin_m));
   // Collisions are looked for at the end of each step.
-  const double step_m = config.road.speed_limit_mps * config.simulation.step_s;
+  const double step_m = config.road.speed_limit_mps * config.simulation.substep_s();
   require(traffic.object_length_m + config.ego.length_m >= step_m,
           "traffic.object_length_m = {} is so short that the ego can jump over it in a step of {} "
           "s: at least {:.2f} is needed",
-          traffic.object_length_m, config.simulation.step_s, step_m - config.ego.length_m);
+          traffic.object_length_m, config.simulation.substep_s(), step_m - config.ego.length_m);
 }
 
 void check_planners(const RunConfig& config) {
@@ -162,6 +178,7 @@ void check_run(const RunConfig& config) {
 void check_config(const RunConfig& config, const std::string& name) {
   try {
     check_road(config);
+    check_clock(config);
     check_traffic(config.traffic);
     check_training_traffic(config.traffic, config.training_traffic);
     check_planners(config);

@@ -14,6 +14,7 @@
 #include <limits>
 
 #include "proto/settings.h"
+#include "proto/worlds.h"
 
 namespace corridor::config_keys {
 
@@ -43,6 +44,7 @@ template <typename Visitor>
 void describe(SimulationSettings& simulation, Visitor& v) {
   v.table("simulation", "SUMO and the clock of both planners.");
   v.number("step_s", simulation.step_s, 0.05, 2.0, "");
+  v.number("substeps", simulation.substeps, 1, 100, "of SUMO and the ego's motion in each step");
   v.number("episode_steps", simulation.episode_steps, 1, 100'000,
            "an episode ends by a collision or after so many");
   v.number("lateral_resolution_m", simulation.lateral_resolution_m, 0.1, 6.0, "");
@@ -94,6 +96,19 @@ void describe(EgoSettings& ego, Visitor& v) {
   v.number("width_m", ego.width_m, 0.5, 3.0, "");
   v.number("acceleration_max_mps2", ego.acceleration_max_mps2, 0.1, 20.0, "");
   v.number("deceleration_max_mps2", ego.deceleration_max_mps2, 0.1, 20.0, "");
+}
+
+template <typename Visitor>
+void describe(DynamicsSettings& dynamics, Visitor& v) {
+  v.table("dynamics", "How the ego gets along its trajectories.");
+  v.choice("world", dynamics.world, world_names(), "kinematic: exactly");
+  v.choice("car", dynamics.car, {"bmw_x5", "toyota_prius"}, "that ODE simulates");
+  v.number("friction", dynamics.friction, 0.1, 1.5, "of slip tyres: 0.9 dry, 0.5 wet, 0.3 snow");
+  v.number("actuation_delay_s", dynamics.actuation_delay_s, 0.0, 1.0, "a multiple of 0.05");
+  v.number("position_noise_m", dynamics.position_noise_m, 0.0, 5.0,
+           "standard deviation of what is measured of the ego");
+  v.number("speed_noise_mps", dynamics.speed_noise_mps, 0.0, 5.0, "");
+  v.flag("ghost", dynamics.ghost, "traffic meets a vehicle where the ego intrudes on a lane");
 }
 
 template <typename Visitor>
@@ -268,6 +283,7 @@ void describe(RunConfig& config, Visitor& v) {
   describe(config.traffic, v);
   describe(config.training_traffic, v);
   describe(config.ego, v);
+  describe(config.dynamics, v);
   describe(config.planner, v);
   describe(config.mop_reward, v);
   describe(config.bp_reward, v);

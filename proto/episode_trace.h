@@ -18,6 +18,27 @@ struct TracedVehicle {
   double speed_mps = 0.0;
   double length_m = 0.0;
   double width_m = 0.0;
+  double yaw_rad = 0.0;  // > 0 to the left
+};
+
+// Between two steps of the planners.
+struct TracedScene {
+  TracedVehicle ego;
+  std::vector<TracedVehicle> others;
+};
+
+// What the planners saw, thought and chose, and what it earned.
+struct TracedDecision {
+  int corridor = 0;  // chosen; the road's count from the right, 0 first
+  double set_point_mps = 0.0;
+  int mop_action = 0;
+  std::vector<double> bp_values;   // of the three commands; empty where no network decides
+  std::vector<double> mop_values;  // of each MoP action; likewise
+  int window_first = 0;            // the corridors that the MoP was shown, and which were open
+  std::vector<bool> window_open;
+  std::vector<double> front_gaps_m, back_gaps_m;  // of the road's corridors
+  std::vector<double> path_s_m, path_d_m;         // the trajectory
+  double bp_reward = 0.0, mop_reward = 0.0;       // of the step that followed
 };
 
 struct TracedStep {
@@ -25,6 +46,8 @@ struct TracedStep {
   std::optional<int> command;         // that was asked for then; none when it was the last, or when
                                       // no planner drove
   std::vector<TracedVehicle> others;  // ascending by id
+  std::optional<TracedDecision> decision = {};  // as `command`
+  std::vector<TracedScene> on_the_way = {};     // to the next step, at equal intervals; may be none
 };
 
 struct TracedCollision {

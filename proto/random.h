@@ -26,6 +26,7 @@ enum class Purpose : std::uint64_t {
   kChaos = 13,            // tests that kill processes at random
   kObject = 14,           // (episode seed, object, draw)
   kTrainingTraffic = 15,  // (episode seed, quantity)
+  kMeasurement = 16,      // (episode seed, instant, quantity, draw)
 };
 
 // 64 uniform bits. Cost: a few ns for each index.

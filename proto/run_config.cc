@@ -50,7 +50,7 @@ class Writer {
   void text(const char* key, const std::string& value, const char* comment) {
     line(key, toml_of(value), comment);
   }
-  void choice(const char* key, const std::string& value, std::initializer_list<const char*>,
+  void choice(const char* key, const std::string& value, const std::vector<const char*>&,
               const char* comment) {
     line(key, toml_of(value), comment);
   }
@@ -81,7 +81,7 @@ class Lister {
   void text(const char* key, const std::string& value, const char*) {
     list_one(key, toml_of(value));
   }
-  void choice(const char* key, const std::string& value, std::initializer_list<const char*>,
+  void choice(const char* key, const std::string& value, const std::vector<const char*>&,
               const char*) {
     list_one(key, toml_of(value));
   }
@@ -203,7 +203,7 @@ class Reader {
     }
     member = value->as_string().str;
   }
-  void choice(const char* key, std::string& member, std::initializer_list<const char*> choices,
+  void choice(const char* key, std::string& member, const std::vector<const char*>& choices,
               const char*) {
     const toml::value* value = find(key);
     if (!value) return;

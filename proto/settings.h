@@ -23,8 +23,11 @@ struct RoadSettings {
 // [simulation] SUMO and the clock of both planners.
 struct SimulationSettings {
   double step_s = 1.0;
+  int substeps = 1;          // SUMO's, the ego's motion's, in each step of the planners
   int episode_steps = 1000;  // an episode ends by a collision or after so many steps
   double lateral_resolution_m = 0.8;
+
+  double substep_s() const { return step_s / substeps; }
 };
 
 // [traffic] A treadmill: the traffic within `window_m` of the ego is kept up around it.
@@ -76,6 +79,20 @@ struct EgoSettings {
   double width_m = 1.8;
   double acceleration_max_mps2 = 2.5;
   double deceleration_max_mps2 = 6.0;
+};
+
+// [dynamics] How the ego gets along its trajectories (actor/world/ego_motion.h).
+inline constexpr double kControlPeriod_s = 0.05;  // of the car's controller
+struct DynamicsSettings {
+  std::string world = "kinematic";  // of kWorlds (proto/worlds.h)
+  std::string car = "bmw_x5";       // or "toyota_prius"
+  double friction = 0.9;            // of slip tyres: 0.9 dry, 0.5 wet, 0.3 snow
+  double actuation_delay_s = 0.0;   // from the controller's decision to its effect
+  // Standard deviations of what planners and controller measure of the ego.
+  double position_noise_m = 0.0;
+  double speed_noise_mps = 0.0;
+  // Traffic does not see what of the ego reaches into another lane: another vehicle is put there.
+  bool ghost = false;
 };
 
 // [planner] The state-action abstraction of paper section III-C.
@@ -231,6 +248,7 @@ struct RunConfig {
   TrafficSettings traffic;
   TrafficDistribution training_traffic;
   EgoSettings ego;
+  DynamicsSettings dynamics;
   PlannerSettings planner;
   MopRewardSettings mop_reward;
   BpRewardSettings bp_reward;

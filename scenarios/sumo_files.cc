@@ -78,6 +78,9 @@ std::string edges_xml(const RoadSettings& road) {
       kHeader, road.lanes, road.lane_width_m, road.speed_limit_mps);
 }
 
+// So little of the ego that a vehicle in the intruded lane's other half is not in its way.
+constexpr double kGhostWidth_m = 0.8;
+
 std::string vehicle_types_xml(const TrafficSettings& traffic, const EgoSettings& ego) {
   const std::string keep_right = fmt::format("lcKeepRight=\"{}\"", traffic.keep_right);
   // Of the kinds in kVehicleKinds. The world draws each vehicle's speed factor itself, from the
@@ -98,6 +101,10 @@ std::string vehicle_types_xml(const TrafficSettings& traffic, const EgoSettings&
       "ego", fmt::format("speedFactor=\"1\" speedDev=\"0\" length=\"{}\" width=\"{}\" "
                          "accel=\"{}\" {} color=\"red\"",
                          ego.length_m, ego.width_m, ego.acceleration_max_mps2, keep_right));
+  xml += vehicle_type_xml("ghost",
+                          fmt::format("speedFactor=\"1\" speedDev=\"0\" length=\"{}\" width=\"{}\" "
+                                      "accel=\"{}\" color=\"red\"",
+                                      ego.length_m, kGhostWidth_m, ego.acceleration_max_mps2));
   for (std::size_t kind = 0; kind < kVehicleKinds.size(); ++kind) {
     for (const char* alignment : kAlignments) {
       xml += vehicle_type_xml(
@@ -126,7 +133,7 @@ std::string configuration_xml(const SimulationSettings& simulation) {
       "    <collision.mingap-factor value=\"0\"/>\n"
       "  </processing>\n"
       "</configuration>\n",
-      kHeader, simulation.step_s, simulation.lateral_resolution_m);
+      kHeader, simulation.substep_s(), simulation.lateral_resolution_m);
 }
 
 void write_sumo_files(const RunConfig& config, const fs::path& directory,

@@ -12,6 +12,29 @@ bool overlap_along(const Ego& ego, const Vehicle& other, const EgoSettings& size
   return other.s_m - other.length_m < ego.s_m && ego.s_m - size.length_m < other.s_m;
 }
 
+// Two rectangles are apart when a line along one's side lies between them; here the lines along the
+// turned one's sides. Half lengths and widths, from the middle.
+bool overlap_turned(const Ego& ego, const Vehicle& other, const EgoSettings& size) {
+  const double cos = std::cos(ego.yaw_rad), sin = std::sin(ego.yaw_rad);
+  // The ego's middle lies half its length behind its front bumper, along its yaw.
+  const double ahead_m = other.s_m - other.length_m / 2 - (ego.s_m - cos * size.length_m / 2);
+  const double left_m = other.d_m - (ego.d_m - sin * size.length_m / 2);
+  const double half_m[] = {size.length_m / 2, size.width_m / 2};
+  const double other_half_m[] = {other.length_m / 2, other.width_m / 2};
+  const double abs_cos = std::abs(cos), abs_sin = std::abs(sin);
+  return std::abs(ahead_m) < other_half_m[0] + half_m[0] * abs_cos + half_m[1] * abs_sin &&
+         std::abs(left_m) < other_half_m[1] + half_m[0] * abs_sin + half_m[1] * abs_cos &&
+         std::abs(cos * ahead_m + sin * left_m) <
+             half_m[0] + other_half_m[0] * abs_cos + other_half_m[1] * abs_sin &&
+         std::abs(-sin * ahead_m + cos * left_m) <
+             half_m[1] + other_half_m[0] * abs_sin + other_half_m[1] * abs_cos;
+}
+
+bool overlap(const Ego& ego, const Vehicle& other, const EgoSettings& size) {
+  if (ego.yaw_rad != 0.0) return overlap_turned(ego, other, size);
+  return overlap_along(ego, other, size) && overlap_across(ego, other, size);
+}
+
 CollisionKind rear_collision(const Ego& ego, const Vehicle& other) {
   return other.s_m < ego.s_m ? CollisionKind::kRearEnded : CollisionKind::kRearEnding;
 }
@@ -43,7 +66,7 @@ CollisionKind kind_of(const Scene& before, const Scene& after, const Vehicle& ot
 
 const char* collision_kind_name(CollisionKind kind) {
   constexpr const char* kNames[kCollisionKinds] = {"rear_ended", "rear_ending", "side_by_other",
-                                                   "side_by_ego"};
+                                                   "side_by_ego", "off_road"};
   const auto index = static_cast<int>(kind);
   CORRIDOR_CHECK(index >= 0 && index < kCollisionKinds, "collision kind {}", index);
   return kNames[index];
@@ -56,7 +79,7 @@ bool overlap_across(const Ego& ego, const Vehicle& other, const EgoSettings& siz
 std::optional<Collision> find_collision(const Scene& before, const Scene& after,
                                         const EgoSettings& ego) {
   for (const Vehicle& other : after.others) {
-    if (overlap_along(after.ego, other, ego) && overlap_across(after.ego, other, ego))
+    if (overlap(after.ego, other, ego))
       return Collision{kind_of(before, after, other, ego), other.id};
   }
   return std::nullopt;

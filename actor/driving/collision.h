@@ -1,4 +1,5 @@
-// Who hit whom. Rectangles along the road, tested at every step: SUMO's own report misses some.
+// Who hit whom. Rectangles along the road, the ego's turned by its yaw, tested at every step:
+// SUMO's own report misses some.
 #pragma once
 
 #include <optional>
@@ -13,18 +14,19 @@ enum class CollisionKind {
   kRearEnding = 1,   // the ego ran into another vehicle
   kSideByOther = 2,  // another vehicle moved sideways into the ego
   kSideByEgo = 3,    // the ego moved sideways into another vehicle
+  kOffRoad = 4,      // the ego's middle left the road: where a car has dynamics of its own
 };
-inline constexpr int kCollisionKinds = 4;
-// "rear_ended", "rear_ending", "side_by_other", "side_by_ego"
+inline constexpr int kCollisionKinds = 5;
+// "rear_ended", "rear_ending", "side_by_other", "side_by_ego", "off_road"
 const char* collision_kind_name(CollisionKind kind);
 
 struct Collision {
   CollisionKind kind = CollisionKind::kRearEnded;
-  int other = 0;  // id
+  int other = 0;  // id; 0 where there is none
   bool operator==(const Collision&) const = default;
 };
 
-// Whether the two would touch if one of them drove on along the road far enough.
+// Whether the two would touch if one of them, along the road both, drove on far enough.
 bool overlap_across(const Ego& ego, const Vehicle& other, const EgoSettings& size);
 
 // The first (lowest id) vehicle that overlaps the ego in `after`, if any. Where the two already

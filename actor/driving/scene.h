@@ -28,6 +28,9 @@ struct Ego {
   double acceleration_mps2 = 0.0;  // over the last step
   double lateral_speed_mps = 0.0;  // over the last step
   double set_point_mps = 0.0;      // the MoP's speed set-point
+  // Of a car with dynamics of its own; 0 where it has none.
+  double yaw_rad = 0.0;  // > 0 to the left
+  double lateral_acceleration_mps2 = 0.0;
   bool operator==(const Ego&) const = default;
 };
 

@@ -34,16 +34,20 @@ Trajectory::Trajectory(const Ego& ego, const Target& target, const DrivingSettin
                                      std::min(settings.step_s, corridor_change_s));
   lateral_duration_s_ = duration_s;
 
-  // d(t) = sum of lateral_[i] t^i with d, d' given and d'' = 0 at 0, and d = destination,
-  // d' = d'' = 0 at the end.
+  // d(t) = sum of lateral_[i] t^i with d, d', d'' given at 0, and d = destination, d' = d'' = 0 at
+  // the end.
   const double start_mps = ego.lateral_speed_mps;
+  const double start_mps2 = ego.lateral_acceleration_mps2;
+  const double t2 = duration_s * duration_s;
   const double t3 = duration_s * duration_s * duration_s;
   lateral_[0] = ego.d_m;
   lateral_[1] = start_mps;
-  lateral_[2] = 0.0;
-  lateral_[3] = (10.0 * distance_m - 6.0 * start_mps * duration_s) / t3;
-  lateral_[4] = (-15.0 * distance_m + 8.0 * start_mps * duration_s) / (t3 * duration_s);
-  lateral_[5] = (6.0 * distance_m - 3.0 * start_mps * duration_s) / (t3 * duration_s * duration_s);
+  lateral_[2] = start_mps2 / 2;
+  lateral_[3] = (10.0 * distance_m - 6.0 * start_mps * duration_s - 1.5 * start_mps2 * t2) / t3;
+  lateral_[4] = (-15.0 * distance_m + 8.0 * start_mps * duration_s + 1.5 * start_mps2 * t2) /
+                (t3 * duration_s);
+  lateral_[5] = (6.0 * distance_m - 3.0 * start_mps * duration_s - 0.5 * start_mps2 * t2) /
+                (t3 * duration_s * duration_s);
 }
 
 TrajectoryPoint Trajectory::at(double t_s) const {
@@ -62,6 +66,10 @@ TrajectoryPoint Trajectory::at(double t_s) const {
     // Exactly the centre, so that step after step does not drift.
     point.d_m = destination_m_;
     return point;
+  }
+  for (int power = 5; power >= 2; --power) {
+    point.lateral_acceleration_mps2 =
+        point.lateral_acceleration_mps2 * t_s + power * (power - 1) * lateral_[power];
   }
   for (int power = 5; power >= 0; --power) {
     point.lateral_speed_mps = point.lateral_speed_mps * t_s + point.d_m;

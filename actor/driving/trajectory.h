@@ -13,14 +13,15 @@ struct TrajectoryPoint {
   double speed_mps = 0.0;
   double acceleration_mps2 = 0.0;  // at this instant: 0 once the set-point is reached
   double lateral_speed_mps = 0.0;
+  double lateral_acceleration_mps2 = 0.0;
 };
 
 // Along the road: constant acceleration within the ego's limits up to the set-point, which is then
 // held (exact integration, never backwards). Across it: a quintic that starts with the ego's
-// position and lateral speed and arrives exactly at the corridor's centre without lateral speed or
-// acceleration; then straight on. It takes corridor_change_s for each corridor of distance, to
-// which moving away adds the way to turn round in, and at least a step, so that planning anew at
-// every step arrives too.
+// position, lateral speed and acceleration and arrives exactly at the corridor's centre without
+// lateral speed or acceleration; then straight on. It takes corridor_change_s for each corridor of
+// distance, to which moving away adds the way to turn round in, and at least a step, so that
+// planning anew at every step arrives too.
 class Trajectory {
  public:
   Trajectory(const Ego& ego, const Target& target, const DrivingSettings& settings);

@@ -18,8 +18,9 @@ constexpr double kSpeedMin_mps = 1.0;
 constexpr int kSpeeds = 60;
 
 // What squared errors and steering cost: 0.2 m across the path count as much as 0.1 rad in heading
-// and 0.03 rad of steering.
-constexpr double kErrorCost = 25.0, kHeadingCost = 100.0, kSteeringCost = 1000.0;
+// and 0.007 rad of steering.
+// Less than that on steering holds the path more closely and is unstable when it acts 0.2 s late.
+constexpr double kErrorCost = 25.0, kHeadingCost = 100.0, kSteeringCost = 20'000.0;
 
 // Errors across the path and in heading, each with its rate, and the steering angle, which lags.
 using State = Eigen::Matrix<double, 5, 1>;

@@ -4,9 +4,12 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
+#include <numbers>
 #include <utility>
 #include <xercesc/util/PlatformUtils.hpp>
 
+#include "actor/world/measurement.h"
 #include "proto/failure.h"
 #include "proto/random.h"
 
@@ -22,6 +25,9 @@ using SumoVehicle = libsumo::Vehicle;
 constexpr const char* kEgo = "ego";
 constexpr const char* kEdge = "road";
 constexpr const char* kRoute = "road";
+constexpr const char* kGhost = "ghost";  // its type
+// An intrusion into the next lane that is less is none.
+constexpr double kIntrusion_m = 0.1;
 
 // SUMO's modes (its TraCI documentation, "Change Vehicle State").
 constexpr int kNoSpeedChecks = 0;
@@ -38,6 +44,11 @@ void require_file(const std::filesystem::path& file) {
   if (!std::filesystem::is_regular_file(file)) {
     throw Failure("no file {} for SUMO: the run directory is incomplete", file.string());
   }
+}
+
+void obey_trajectories(const std::string& id) {
+  SumoVehicle::setSpeedMode(id, kNoSpeedChecks);
+  SumoVehicle::setLaneChangeMode(id, kNoLaneChanges);
 }
 
 // Calls into SUMO; what it throws becomes a Failure (its details are on standard error).
@@ -57,7 +68,8 @@ SumoWorld::SumoWorld(const WorldSettings& settings, std::filesystem::path networ
     : settings_(settings),
       network_(std::move(network)),
       vehicle_types_(std::move(vehicle_types)),
-      time_(time) {
+      time_(time),
+      motion_(make_ego_motion(settings.dynamics, settings.road, settings.ego)) {
   require_file(network_);
   require_file(vehicle_types_);
   CORRIDOR_CHECK(!world_exists.exchange(true), "libsumo holds one simulation a process");
@@ -80,12 +92,17 @@ driving::Scene SumoWorld::begin(const EpisodeStart& start) {
   running_ = true;
   return in_sumo("starting an episode", [&] {
     driver_ = start.driver;
+    seed_ = start.seed;
+    watch_ = start.watch;
+    ghost_lane_.reset();
+    ghosts_ = 0;
     const auto right_lane = libsumo::Lane::getShape(lane_id(0)).value;
     right_edge_y_m_ = right_lane.front().y - settings_.road.lane_width_m / 2;
     new_objects_.clear();
     traffic_.emplace(traffic_scenario(start), start.seed);
     scene_ = Scene{traffic_->start(), {}};
     add_ego(scene_.ego, start.driver);
+    motion_->begin(scene_.ego, seed_);
     for (const Entrance& entrance : traffic_->populate(scene_.ego)) add(entrance);
     time_.charge(TimePart::kLoad);
     return scene_;
@@ -96,21 +113,22 @@ StepResult SumoWorld::step(const driving::Trajectory& trajectory) {
   CORRIDOR_CHECK(running_ && driver_ == EgoDriver::kPlanner);
   time_.charge(TimePart::kPlan);
   return in_sumo("placing the ego and stepping", [&] {
-    const driving::TrajectoryPoint point = trajectory.at(settings_.simulation.step_s);
-    // The whole body stays on the road: SUMO loses a vehicle whose middle is off it.
-    const double margin_m = settings_.ego.width_m / 2;
-    const double road_width_m = settings_.road.lanes * settings_.road.lane_width_m;
-    const double d_m = std::clamp(point.d_m, margin_m, road_width_m - margin_m);
-    SumoVehicle::moveToXY(kEgo, kEdge, -1, point.s_m, right_edge_y_m_ + d_m,
-                          libsumo::INVALID_DOUBLE_VALUE, kKeepExactPosition);
-    SumoVehicle::setSpeed(kEgo, point.speed_mps);
-    // SUMO moves the others first, past the ego where it was, and then places the ego: after the
-    // step all are at the same instant.
-    simulate();
-    const double acceleration_mps2 =
-        (point.speed_mps - scene_.ego.speed_mps) / settings_.simulation.step_s;
-    return finish_step({point.s_m, d_m, point.speed_mps, acceleration_mps2, point.lateral_speed_mps,
-                        trajectory.target().set_point_mps});
+    const double before_mps = scene_.ego.speed_mps;
+    StepResult result;
+    for (int i = 0; i < settings_.simulation.substeps && !result.collision; ++i) {
+      const double from_s = i * settings_.simulation.substep_s();
+      const double to_s = (i + 1) * settings_.simulation.substep_s();
+      Motion motion = motion_->drive(trajectory, from_s, to_s);
+      motion.ego.acceleration_mps2 = (motion.ego.speed_mps - before_mps) / to_s;
+      motion.measured.acceleration_mps2 = motion.ego.acceleration_mps2;
+      motion.reference.acceleration_mps2 = motion.ego.acceleration_mps2;
+      place(motion.ego);
+      // SUMO moves the others first, past the ego where it was, and then places the ego: after the
+      // step all are at the same instant.
+      simulate();
+      result = finish_substep(motion);
+    }
+    return result;
   });
 }
 
@@ -119,13 +137,20 @@ StepResult SumoWorld::step_by_world() {
   time_.charge(TimePart::kPlan);
   return in_sumo("stepping", [&] {
     const Ego before = scene_.ego;
-    simulate();
-    const libsumo::TraCIPosition position = SumoVehicle::getPosition(kEgo);
-    const double speed_mps = SumoVehicle::getSpeed(kEgo);
-    const double d_m = position.y - right_edge_y_m_;
-    const double step_s = settings_.simulation.step_s;
-    return finish_step({position.x, d_m, speed_mps, (speed_mps - before.speed_mps) / step_s,
-                        (d_m - before.d_m) / step_s, 0.0});
+    StepResult result;
+    for (int i = 0; i < settings_.simulation.substeps && !result.collision; ++i) {
+      simulate();
+      const libsumo::TraCIPosition position = SumoVehicle::getPosition(kEgo);
+      const double so_far_s = (i + 1) * settings_.simulation.substep_s();
+      Ego ego;
+      ego.s_m = position.x;
+      ego.d_m = position.y - right_edge_y_m_;
+      ego.speed_mps = SumoVehicle::getSpeed(kEgo);
+      ego.acceleration_mps2 = (ego.speed_mps - before.speed_mps) / so_far_s;
+      ego.lateral_speed_mps = (ego.d_m - before.d_m) / so_far_s;
+      result = finish_substep({ego, ego, ego});
+    }
+    return result;
   });
 }
 
@@ -133,11 +158,56 @@ driving::Scene SumoWorld::take_over() {
   CORRIDOR_CHECK(running_ && driver_ == EgoDriver::kWorld);
   return in_sumo("taking over the ego", [&] {
     driver_ = EgoDriver::kPlanner;
-    obey_trajectories();
+    obey_trajectories(kEgo);
     Ego& ego = scene_.ego;
     ego.set_point_mps = std::min(ego.speed_mps, settings_.road.speed_limit_mps);
+    motion_->begin(ego, seed_);
     return scene_;
   });
+}
+
+void SumoWorld::place(const Ego& ego) {
+  constexpr double kDegreesPerRadian = 180.0 / std::numbers::pi;
+  // SUMO counts from north, clockwise; without an angle the ego stands along its lane.
+  const double angle =
+      ego.yaw_rad == 0.0 ? libsumo::INVALID_DOUBLE_VALUE : 90.0 - kDegreesPerRadian * ego.yaw_rad;
+  const double d_m = on_road_m(ego.d_m, settings_.road, settings_.ego);
+  SumoVehicle::moveToXY(kEgo, kEdge, -1, ego.s_m, right_edge_y_m_ + d_m, angle, kKeepExactPosition);
+  SumoVehicle::setSpeed(kEgo, ego.speed_mps);
+  if (settings_.dynamics.ghost) place_ghost(ego);
+}
+
+// SUMO's drivers see the ego in the lane that its middle is in. Where its body reaches into another
+// one, they meet a vehicle as long and fast as it, just across the line.
+void SumoWorld::place_ghost(const Ego& ego) {
+  const double lane_m = settings_.road.lane_width_m;
+  const int lane = std::clamp(static_cast<int>(ego.d_m / lane_m), 0, settings_.road.lanes - 1);
+  const double from_line_m = ego.d_m - lane * lane_m;
+  const double reach_m = settings_.ego.width_m / 2 - kIntrusion_m;
+  std::optional<int> intruded;
+  if (from_line_m < reach_m && lane > 0) intruded = lane - 1;
+  if (lane_m - from_line_m < reach_m && lane + 1 < settings_.road.lanes) intruded = lane + 1;
+
+  if (ghost_lane_ && ghost_lane_ != intruded) {
+    SumoVehicle::remove(fmt::format("{}{}", kGhost, ghosts_));
+    ghost_lane_.reset();
+  }
+  if (!intruded) return;
+  if (!ghost_lane_) {
+    const std::string id = fmt::format("{}{}", kGhost, ++ghosts_);
+    SumoVehicle::add(id, kRoute, kGhost);
+    SumoVehicle::moveTo(id, lane_id(*intruded), scene_.ego.s_m);
+    SumoVehicle::setPreviousSpeed(id, ego.speed_mps);
+    obey_trajectories(id);
+    ghost_lane_ = intruded;
+  }
+  const std::string id = fmt::format("{}{}", kGhost, ghosts_);
+  const double width_m = SumoVehicle::getWidth(id);
+  const double d_m =
+      *intruded < lane ? lane * lane_m - width_m / 2 : (lane + 1) * lane_m + width_m / 2;
+  SumoVehicle::moveToXY(id, kEdge, -1, ego.s_m, right_edge_y_m_ + d_m,
+                        libsumo::INVALID_DOUBLE_VALUE, kKeepExactPosition);
+  SumoVehicle::setSpeed(id, ego.speed_mps);
 }
 
 void SumoWorld::simulate() {
@@ -157,24 +227,31 @@ void SumoWorld::end() {
 // or freed memory, in the next episode: hence just before the step.
 void SumoWorld::put_objects_to_the_edge() {
   for (const Vehicle& object : new_objects_) {
-    const double s_m = object.s_m + object.speed_mps * settings_.simulation.step_s;
+    const double s_m = object.s_m + object.speed_mps * settings_.simulation.substep_s();
     SumoVehicle::moveToXY(sumo_id(object.id), kEdge, -1, s_m, right_edge_y_m_ + object.d_m,
                           libsumo::INVALID_DOUBLE_VALUE, kKeepExactPosition);
   }
   new_objects_.clear();
 }
 
-StepResult SumoWorld::finish_step(const driving::Ego& ego_after) {
+StepResult SumoWorld::finish_substep(const Motion& after) {
   const Scene before = scene_;
-  scene_.ego = ego_after;
+  scene_.ego = after.ego;
   read_others();
   StepResult result;
   result.collision = driving::find_collision(before, scene_, settings_.ego);
+  const double road_width_m = settings_.road.lanes * settings_.road.lane_width_m;
+  if (scene_.ego.d_m < 0.0 || scene_.ego.d_m > road_width_m) {
+    result.collision = driving::Collision{driving::CollisionKind::kOffRoad, 0};
+  }
   const TrafficChange change = traffic_->decide(scene_);
   time_.charge(TimePart::kWorld);
   apply(change);
   time_.charge(TimePart::kTraffic);
+  if (watch_) watch_(scene_);
   result.scene = scene_;
+  result.measured = after.measured;
+  result.reference = after.reference;
   time_.charge(TimePart::kWorld);
   return result;
 }
@@ -229,19 +306,14 @@ void SumoWorld::add_ego(const driving::Ego& ego, EgoDriver driver) {
   SumoVehicle::add(kEgo, kRoute, kEgo);
   SumoVehicle::moveTo(kEgo, lane_id(lane), ego.s_m);
   SumoVehicle::setPreviousSpeed(kEgo, ego.speed_mps);
-  if (driver == EgoDriver::kPlanner) obey_trajectories();
-}
-
-void SumoWorld::obey_trajectories() {
-  SumoVehicle::setSpeedMode(kEgo, kNoSpeedChecks);
-  SumoVehicle::setLaneChangeMode(kEgo, kNoLaneChanges);
+  if (driver == EgoDriver::kPlanner) obey_trajectories(kEgo);
 }
 
 std::vector<std::string> SumoWorld::options(const EpisodeStart& start) const {
   const std::uint64_t seed = random_bits(start.seed, Purpose::kSumo, {}) >> 33;
   std::vector<std::string> result = {
       "--net-file", network_.string(), "--route-files", vehicle_types_.string(), "--seed",
-      fmt::format("{}", seed), "--step-length", fmt::format("{}", settings_.simulation.step_s),
+      fmt::format("{}", seed), "--step-length", fmt::format("{}", settings_.simulation.substep_s()),
       "--lateral-resolution", fmt::format("{}", settings_.simulation.lateral_resolution_m),
       "--time-to-teleport", "-1",
       // Collisions are ours to find (actor/driving/collision.h).
@@ -263,7 +335,7 @@ TrafficScenario SumoWorld::traffic_scenario(const EpisodeStart& start) const {
   return {start.traffic.value_or(settings_.traffic),
           settings_.road,
           settings_.ego,
-          settings_.simulation.step_s,
+          settings_.simulation.substep_s(),
           {size("car_center"), size("slow_center"), size("truck_center")}};
 }
 

@@ -1,16 +1,18 @@
 // The World that SUMO simulates. The only user of libsumo.
 //
-// The ego is placed by its trajectory (kinematic: it is exactly where the trajectory says), or
-// driven by SUMO; SUMO drives all others. One step costs about 0.1 ms with 15 vehicles, `begin`
+// The ego moves along its trajectories as [dynamics] says, or SUMO drives it; SUMO drives all
+// others. One step costs about 0.1 ms with 15 vehicles, `begin`
 // about 5 ms and a few KB that libsumo leaks.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "actor/world/ego_motion.h"
 #include "actor/world/traffic.h"
 #include "actor/world/world.h"
 #include "proto/settings.h"
@@ -24,10 +26,11 @@ struct WorldSettings {
   SimulationSettings simulation;
   TrafficSettings traffic;
   EgoSettings ego;
+  DynamicsSettings dynamics;
 };
 
 inline WorldSettings world_settings(const RunConfig& config) {
-  return {config.road, config.simulation, config.traffic, config.ego};
+  return {config.road, config.simulation, config.traffic, config.ego, config.dynamics};
 }
 
 class SumoWorld : public World {
@@ -52,13 +55,14 @@ class SumoWorld : public World {
   std::vector<std::string> options(const EpisodeStart& start) const;
   TrafficScenario traffic_scenario(const EpisodeStart& start) const;
   void add_ego(const driving::Ego& ego, EgoDriver driver);
-  void obey_trajectories();
   void add(const Entrance& entrance);
   void apply(const TrafficChange& change);
   void read_others();
   void put_objects_to_the_edge();
+  void place(const driving::Ego& ego);
+  void place_ghost(const driving::Ego& ego);
   void simulate();
-  StepResult finish_step(const driving::Ego& ego_after);
+  StepResult finish_substep(const Motion& after);
 
   WorldSettings settings_;
   std::filesystem::path network_;
@@ -68,10 +72,15 @@ class SumoWorld : public World {
   // Of the episode in progress.
   bool running_ = false;
   EgoDriver driver_ = EgoDriver::kPlanner;
+  std::uint64_t seed_ = 0;
+  std::function<void(const driving::Scene&)> watch_;
+  std::unique_ptr<EgoMotion> motion_;
   double right_edge_y_m_ = 0.0;  // SUMO's y of the road's right edge; d = y - this
   std::optional<Traffic> traffic_;
   driving::Scene scene_;
   std::vector<driving::Vehicle> new_objects_;  // since the last step
+  std::optional<int> ghost_lane_;              // where the ghost is
+  int ghosts_ = 0;                             // so far
 };
 
 }  // namespace corridor::world

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 
 #include "actor/driving/collision.h"
@@ -21,11 +22,14 @@ struct EpisodeStart {
   std::uint64_t seed = 0;  // all that is random in the episode follows from it
   EgoDriver driver = EgoDriver::kPlanner;
   std::filesystem::path fcd_output{};  // SUMO's own record of every vehicle's motion; empty: none
-  std::optional<TrafficSettings> traffic{};  // the episode's own, in place of the world's
+  std::optional<TrafficSettings> traffic{};            // the episode's own, in place of the world's
+  std::function<void(const driving::Scene&)> watch{};  // sees every substep; none: nobody does
 };
 
 struct StepResult {
   driving::Scene scene;
+  driving::Ego measured;   // the ego as planners see it
+  driving::Ego reference;  // where the next trajectory is to start (world/ego_motion.h)
   std::optional<driving::Collision> collision;
 };
 

@@ -62,20 +62,20 @@ TEST_F(Evaluation, PlannersWithALearnedBpWaitForItsPhase) {
 TEST_F(Evaluation, AnotherScenarioHasItsWorldAndTheRunsPlanners) {
   const std::filesystem::path scenario = temporary_.path() / "dense.toml";
   write_file(scenario, "[traffic]\nvehicles_max = 17\n[mop]\ngamma = 0.5\n");
-  const RunDirectory place = scenario_directory(directory_, scenario);
+  const RunDirectory place = world_directory(directory_, {scenario});
   EXPECT_EQ(place.root(), directory_.root() / "scenarios" / "dense");
   const RunConfig config = load_run_config(place.config());
   EXPECT_EQ(config.traffic.vehicles_max, 17);
   EXPECT_EQ(config.phase(Phase::kMop).gamma, config_.phase(Phase::kMop).gamma);
   EXPECT_TRUE(std::filesystem::exists(place.network()));
   EXPECT_TRUE(std::filesystem::exists(place.routes()));
-  EXPECT_EQ(scenario_directory(directory_, scenario).root(), place.root()) << "again";
+  EXPECT_EQ(world_directory(directory_, {scenario}).root(), place.root()) << "again";
 
   write_file(scenario, "[traffic]\nvehicles_max = 18\n");
-  EXPECT_THAT([&] { scenario_directory(directory_, scenario); },
+  EXPECT_THAT([&] { world_directory(directory_, {scenario}); },
               ThrowsMessage<Failure>(HasSubstr("driven with other settings")));
   std::filesystem::remove(place.config());  // as if stopped before it was written
-  EXPECT_EQ(load_run_config(scenario_directory(directory_, scenario).config()).traffic.vehicles_max,
+  EXPECT_EQ(load_run_config(world_directory(directory_, {scenario}).config()).traffic.vehicles_max,
             18);
 }
 
@@ -83,7 +83,7 @@ TEST_F(Evaluation, AScenarioThatTheNetworksDoNotFitIsRefused) {
   const std::filesystem::path scenario = temporary_.path() / "wide.toml";
   write_file(scenario,
              "[road]\nlanes = 4\n[bp_reward]\nthresholds_mps = [9.0, 10.0, 11.0, 12.0]\n");
-  EXPECT_THAT([&] { scenario_directory(directory_, scenario); },
+  EXPECT_THAT([&] { world_directory(directory_, {scenario}); },
               ThrowsMessage<Failure>(HasSubstr("has 4 lanes")));
 }
 

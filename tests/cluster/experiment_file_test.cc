@@ -22,7 +22,7 @@ const std::string kTraining =
     "[[training]]\n"
     "name = \"first\"\n"
     "scenario = \"a.toml\"\n"
-    "evaluate_in = [\"a.toml\", \"b.toml\"]\n";
+    "evaluate_in = [\"a.toml\", \"b.toml dynamics.friction=0.5\"]\n";
 
 class ExperimentFile : public testing::Test {
  protected:
@@ -63,8 +63,12 @@ TEST_F(ExperimentFile, SaysWhatIsTrainedAndWhereItIsEvaluated) {
   const TrainingArm& first = experiment.trainings[0];
   EXPECT_EQ(first.name, "first");
   EXPECT_EQ(first.scenario, temporary_.path() / "a.toml");
-  EXPECT_THAT(first.evaluate_in,
-              ElementsAre(temporary_.path() / "a.toml", temporary_.path() / "b.toml"));
+  ASSERT_EQ(first.evaluate_in.size(), 2u);
+  EXPECT_EQ(first.evaluate_in[0].scenario, temporary_.path() / "a.toml");
+  EXPECT_EQ(first.evaluate_in[1].scenario, temporary_.path() / "b.toml");
+  EXPECT_EQ(first.evaluate_in[0].name(""), "a");
+  EXPECT_EQ(first.evaluate_in[1].name(""), "b+friction=0.5");
+  EXPECT_THAT(first.evaluate_in[1].settings, ElementsAre("dynamics.friction=0.5"));
   EXPECT_THAT(first.planners, ElementsAre("hierarchical", "rules"));
   EXPECT_THAT(first.training_seeds, ElementsAre(1, 2));
   EXPECT_TRUE(first.settings.empty());
@@ -122,7 +126,7 @@ TEST_F(ExperimentFile, TwoScenariosOfOneNameWouldShareAPlace) {
   write_file(temporary_.path() / "other" / "a.toml", "");
   EXPECT_THAT(failure_of(kHead + "[[training]]\nname = \"x\"\nscenario = \"a.toml\"\n"
                                  "evaluate_in = [\"a.toml\", \"other/a.toml\"]\n"),
-              HasSubstr("two scenarios of the name a"));
+              HasSubstr("two worlds of the name a"));
 }
 
 TEST(Experiments, OfTheRepositoryAreRight) {

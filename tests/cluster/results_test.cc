@@ -20,7 +20,7 @@ EvaluationResult result(const std::string& planner, std::uint64_t seed, double r
   result.steps = 1500;
   result.episodes = 2;
   result.collisions = collisions;
-  result.collisions_by_kind = {collisions, 0, 0, 0};
+  result.collisions_by_kind = {collisions, 0, 0, 0, 0};
   result.lane_changes = 30;
   result.mean_speed_kph = 45.0;
   result.distance_km = 18.75;

@@ -69,7 +69,7 @@ class FakeWorld : public world::World {
     scene_.ego = ego;
     for (auto& vehicle : scene_.others)
       vehicle.s_m += vehicle.speed_mps * config_.simulation.step_s;
-    return {scene_, driving::find_collision(before, scene_, config_.ego)};
+    return {scene_, ego, ego, driving::find_collision(before, scene_, config_.ego)};
   }
 
   RunConfig config_;

@@ -20,7 +20,8 @@ inline nlohmann::json record_collision(const RunConfig& config, world::World& wo
     while (!episode.step(driving::Command::kKeep, driving::index_of({0, fastest})).episode_ended) {
     }
     if (!episode.summary().collision || episode.summary().steps < 5) continue;
-    return {{"episode_seed", seed},
+    return {{"planner", "keep+rules"},
+            {"episode_seed", seed},
             {"driven_by_world", false},
             {"actions", episode.actions()},
             {"trajectory_hash", fmt::format("{:016x}", episode.trajectory_hash())},

@@ -128,5 +128,35 @@ TEST(CollisionKinds, HaveNames) {
   EXPECT_STREQ(collision_kind_name(CollisionKind::kSideByEgo), "side_by_ego");
 }
 
+// The ego with a yaw, against another one beside it.
+bool touches(double yaw_rad, const Vehicle& other) {
+  Scene scene{ego_in_the_middle(), {other}};
+  scene.ego.yaw_rad = yaw_rad;
+  return find_collision(scene, scene, kEgo).has_value();
+}
+
+TEST(FindCollision, TurnsTheEgosBodyByItsYaw) {
+  const Ego ego = ego_in_the_middle();
+  // Beside its rear, 5 cm away: to turn left about the front bumper swings the rear to the right.
+  const Vehicle right{.id = 4, .s_m = ego.s_m - 2.0, .d_m = ego.d_m - 1.85};
+  const Vehicle left{.id = 4, .s_m = ego.s_m - 2.0, .d_m = ego.d_m + 1.85};
+  for (const double yaw_rad : {0.0, 1e-12}) {
+    EXPECT_FALSE(touches(yaw_rad, right));
+    EXPECT_FALSE(touches(yaw_rad, left));
+  }
+  EXPECT_TRUE(touches(0.05, right));
+  EXPECT_FALSE(touches(-0.05, right));
+  EXPECT_TRUE(touches(-0.05, left));
+  EXPECT_FALSE(touches(0.05, left));
+}
+
+TEST(FindCollision, SeesAcrossACorner) {
+  const Ego ego = ego_in_the_middle();
+  // Boxes along the road around both would overlap; the turned one passes by the corner.
+  const Vehicle corner{.id = 4, .s_m = ego.s_m + 5.5, .d_m = ego.d_m - 1.7};
+  EXPECT_FALSE(touches(0.4, corner));
+  EXPECT_TRUE(touches(-0.4, {.id = 4, .s_m = ego.s_m + 5.3, .d_m = ego.d_m}));
+}
+
 }  // namespace
 }  // namespace corridor::driving

@@ -230,6 +230,99 @@ TEST_F(SumoWorldTest, DrivesAnEpisodeInItsOwnTraffic) {
   EXPECT_GT(world.begin({.seed = 11}).others.size(), 6u);
 }
 
+TEST_F(SumoWorldTest, DrivesAStepInSeveralOfSumosOwn) {
+  config_.simulation.substeps = 5;
+  SumoWorld world = make();
+  Scene before = world.begin({7, EgoDriver::kPlanner, {}});
+  double way_m = 0.0, largest_change_m = 0.0;
+  for (int step = 0; step < 100; ++step) {
+    const driving::Trajectory trajectory = weave(before, step);
+    const driving::TrajectoryPoint point = trajectory.at(1.0);
+    const StepResult result = world.step(trajectory);
+    if (result.collision) break;
+    const Scene& after = result.scene;
+    EXPECT_DOUBLE_EQ(after.ego.s_m, point.s_m);
+    EXPECT_DOUBLE_EQ(after.ego.d_m, point.d_m);
+    EXPECT_NEAR(after.ego.acceleration_mps2, point.speed_mps - before.ego.speed_mps, 1e-9);
+    for (const Vehicle& now : after.others) {
+      const Vehicle* then = find_vehicle(before, now.id);
+      if (then == nullptr) continue;
+      way_m += now.s_m - then->s_m;
+      // Faster or slower within the step: not by the last speed alone.
+      largest_change_m = std::max(largest_change_m, std::abs(now.s_m - then->s_m - now.speed_mps));
+    }
+    before = after;
+  }
+  EXPECT_GT(way_m, 1000.0);
+  EXPECT_GT(largest_change_m, 0.01);
+}
+
+TEST_F(SumoWorldTest, StopsAStepWhereTheEgoCollides) {
+  config_.simulation.substeps = 5;
+  config_.traffic.slow_speed_factor = 0.2;
+  config_.traffic.slow_share = 1.0;
+  config_.traffic.truck_share = 0.0;
+  SumoWorld world = make();
+  double smallest_share = 1.0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    Scene scene = world.begin({seed, EgoDriver::kPlanner, {}});
+    std::optional<driving::Collision> collision;
+    for (int step = 0; step < 200 && !collision; ++step) {
+      const driving::Trajectory ahead(scene.ego, {7, 13.8}, driving_settings(config_));
+      const StepResult result = world.step(ahead);
+      collision = result.collision;
+      if (collision) {
+        const double way_m = result.scene.ego.s_m - scene.ego.s_m;
+        const double share = way_m / (ahead.at(1.0).s_m - scene.ego.s_m);
+        smallest_share = std::min(smallest_share, share);
+        EXPECT_LE(share, 1.0 + 1e-9);
+      }
+      scene = result.scene;
+    }
+    EXPECT_TRUE(collision);
+  }
+  EXPECT_LT(smallest_share, 0.5);
+}
+
+TEST_F(SumoWorldTest, DrivesACarWithDynamicsBitForBitAfterAnyOtherEpisodes) {
+  config_.simulation.substeps = 5;
+  for (const char* kind : {"webots", "slip"}) {
+    config_.dynamics = {.world = kind, .position_noise_m = 0.1, .ghost = true};
+    SumoWorld world = make();
+    const std::uint64_t hash = drive(world, 21, EgoDriver::kPlanner, 60);
+    drive(world, 22, EgoDriver::kPlanner, 45);
+    drive(world, 23, EgoDriver::kWorld, 20);
+    EXPECT_EQ(drive(world, 21, EgoDriver::kPlanner, 60), hash) << kind;
+  }
+}
+
+// The ego straddles the line between the middle and the left lane, at walking pace: whoever comes
+// up behind it in the left lane sees it if there is a ghost.
+TEST_F(SumoWorldTest, AGhostMakesTrafficBrakeForWhatReachesIntoItsLane) {
+  config_.simulation.substeps = 5;
+  config_.traffic.blind_rate_per_s = 0.0;
+  const auto collisions = [&](bool ghost) {
+    config_.dynamics.ghost = ghost;
+    SumoWorld world = make();
+    int count = 0;
+    for (std::uint64_t seed = 60; seed < 72; ++seed) {
+      Scene scene = world.begin({seed, EgoDriver::kPlanner, {}});
+      for (int step = 0; step < 60; ++step) {
+        // Corridor 9 is the left one of the middle lane.
+        const StepResult result = world.step({scene.ego, {9, 6.0}, driving_settings(config_)});
+        scene = result.scene;
+        if (!result.collision) continue;
+        ++count;
+        break;
+      }
+    }
+    return count;
+  };
+  const int without = collisions(false), with = collisions(true);
+  EXPECT_GE(without, 3);
+  EXPECT_LT(with, without);
+}
+
 class SumoObjects : public SumoWorldTest {
  protected:
   SumoObjects() {

@@ -1,0 +1,30 @@
+#include "actor/world/ego_motion.h"
+
+#include "actor/vehicle/ode_vehicle.h"
+#include "actor/world/dynamic_motion.h"
+#include "actor/world/kinematic_motion.h"
+#include "proto/failure.h"
+
+namespace corridor::world {
+namespace {
+
+constexpr double kWebotsStep_s = 0.01;
+constexpr double kSlipStep_s = 0.002;
+
+}  // namespace
+
+std::unique_ptr<EgoMotion> make_ego_motion(const DynamicsSettings& dynamics,
+                                           const RoadSettings& road, const EgoSettings& ego) {
+  if (dynamics.world == "kinematic") return std::make_unique<KinematicMotion>(dynamics, road, ego);
+  const bool slips = dynamics.world == "slip";
+  CORRIDOR_CHECK(slips || dynamics.world == "webots", "{}", dynamics.world);
+  const vehicle::CarModel car =
+      dynamics.car == "bmw_x5" ? vehicle::bmw_x5() : vehicle::toyota_prius();
+  const vehicle::TyreModel tyre =
+      slips ? vehicle::slip_tyre(dynamics.friction) : vehicle::kWebotsTyre;
+  return std::make_unique<DynamicMotion>(
+      std::make_unique<vehicle::OdeVehicle>(car, tyre, slips ? kSlipStep_s : kWebotsStep_s), car,
+      tyre, dynamics, road, ego);
+}
+
+}  // namespace corridor::world

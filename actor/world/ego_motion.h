@@ -1,0 +1,34 @@
+// How the ego gets along its trajectories (settings: [dynamics]).
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "actor/driving/scene.h"
+#include "actor/driving/trajectory.h"
+#include "proto/settings.h"
+
+namespace corridor::world {
+
+// The ego in three ways, which differ only where a car has dynamics, or measurements errors.
+struct Motion {
+  driving::Ego ego;        // as it is
+  driving::Ego measured;   // as planners see it
+  driving::Ego reference;  // as it should be: trajectories that start there continue one another
+};
+
+// One thread owns it. Equal calls give equal bits.
+class EgoMotion {
+ public:
+  virtual ~EgoMotion() = default;
+  // Measurement errors follow from the episode's seed.
+  virtual void begin(const driving::Ego& start, std::uint64_t episode_seed) = 0;
+  // From `from_s` to `to_s` after the trajectory's start; each trajectory from 0 on without a gap.
+  virtual Motion drive(const driving::Trajectory& trajectory, double from_s, double to_s) = 0;
+};
+
+// Of dynamics.world. The whole body stays on the road.
+std::unique_ptr<EgoMotion> make_ego_motion(const DynamicsSettings& dynamics,
+                                           const RoadSettings& road, const EgoSettings& ego);
+
+}  // namespace corridor::world

@@ -1,0 +1,148 @@
+#include "cluster/drive.h"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+
+#include "cluster/clip.h"
+#include "cluster/evaluation_result.h"
+#include "cluster/film.h"
+#include "cluster/local.h"
+#include "cluster/player.h"
+#include "proto/failure.h"
+#include "proto/planner_pairs.h"
+#include "proto/run_config.h"
+#include "proto/run_directory.h"
+#include "proto/subprocess.h"
+#include "scenarios/sumo_files.h"
+
+namespace corridor::cluster {
+namespace {
+
+namespace fs = std::filesystem;
+
+// What is shown before a collision.
+constexpr double kBeforeCollision_s = 8.0;
+
+// Everything that is driven is of one run, in one world.
+struct Place {
+  RunDirectory trained;
+  RunDirectory directory;  // of the world
+  RunConfig config;
+};
+
+EpisodeTrace traced(const Place& place, std::vector<std::string> arguments) {
+  constexpr std::chrono::minutes kPatience{10};
+  arguments.insert(arguments.begin(), place.directory.root().string());
+  arguments.insert(arguments.end(), {"--networks", place.trained.root().string()});
+  const auto driven =
+      run_subprocess(program_directory() / "corridor-actor", arguments, "", kPatience);
+  if (!driven) throw Failure("the episode was not driven within ten minutes");
+  if (driven->status != 0) {
+    throw Failure("{}", driven->errors.substr(0, driven->errors.find('\n')));
+  }
+  return parse_episode_trace(nlohmann::json::parse(driven->output, nullptr, false),
+                             "what corridor-actor drove");
+}
+
+EpisodeTrace recorded(const Place& place, const fs::path& file) {
+  return traced(place, {"--trace", file.string()});
+}
+
+std::string in_world(const Place& place) {
+  const DynamicsSettings& dynamics = place.config.dynamics;
+  return dynamics.world == "kinematic" ? std::string() : ", " + dynamics.world;
+}
+
+std::vector<Clip> collisions(const Place& place, const DriveOptions& options) {
+  std::vector<Clip> clips;
+  for (const EvaluationResult& result : read_evaluations(place.directory.evaluation())) {
+    if (result.planner != options.planner || result.seed != options.seed.value_or(result.seed))
+      continue;
+    for (std::size_t i = 0; i < result.per_episode.size(); ++i) {
+      if (result.per_episode[i].collisions == 0) continue;
+      if (static_cast<int>(clips.size()) == options.most) return clips;
+      const std::string name = fmt::format("{}_{}_{}", result.planner, result.seed, i);
+      const EpisodeTrace trace = recorded(place, find_episode(place.directory, name));
+      const double end_s = trace.step_s * static_cast<double>(trace.steps.size() - 1);
+      clips.push_back(clip_of(trace,
+                              fmt::format("{}{}: {}", name, in_world(place), trace.collision->kind),
+                              end_s - kBeforeCollision_s, end_s));
+    }
+  }
+  if (clips.empty()) {
+    throw Failure("{} has no collision of {}: evaluate it first, or look at another planner",
+                  place.directory.evaluation().string(), options.planner);
+  }
+  return clips;
+}
+
+Place place_of(const DriveOptions& options) {
+  const RunDirectory trained = RunDirectory::open(options.run);
+  const bool own = options.world.scenario.empty() && options.world.settings.empty();
+  const RunDirectory directory = own ? trained : world_directory(trained, options.world);
+  const RunConfig config = load_run_config(directory.config());
+  if (!fs::exists(directory.network())) {  // of an exported run
+    scenarios::write_sumo_files(config, directory.network().parent_path());
+  }
+  return {trained, directory, config};
+}
+
+}  // namespace
+
+int drive(const DriveOptions& options) {
+  if (!(options.seconds > 0.0) || !(options.interval_s > 0.0) || !(options.from_s >= 0.0)) {
+    throw Failure("--from {} --seconds {} --interval {}: give a stretch of time", options.from_s,
+                  options.seconds, options.interval_s);
+  }
+  const Place place = place_of(options);
+  std::vector<Clip> clips;
+  std::string name;
+  if (options.collisions) {
+    clips = collisions(place, options);
+    name = options.planner + "_collisions";
+  } else if (!options.episode.empty()) {
+    const fs::path file = find_episode(place.directory, options.episode);
+    name = file.stem().string();
+    clips.push_back(clip_of(recorded(place, file), name + in_world(place), options.from_s,
+                            options.from_s + options.seconds));
+  } else {
+    check_can_drive(options.planner, place.trained, place.config);
+    const std::uint64_t seed = options.seed.value_or(place.config.evaluation.seeds.front());
+    const auto steps = static_cast<std::int64_t>(
+        std::ceil((options.from_s + options.seconds) / place.config.simulation.step_s));
+    name = fmt::format("{}_{}_{}", options.planner, seed, options.number);
+    const EpisodeTrace trace =
+        traced(place, {"--drive", options.planner, "--seed", std::to_string(seed), "--of-seed",
+                       std::to_string(options.number), "--steps", std::to_string(steps)});
+    clips.push_back(
+        clip_of(trace, name + in_world(place), options.from_s, options.from_s + options.seconds));
+  }
+  for (Clip& clip : clips) clip.speed_changes_mps = place.config.planner.speed_changes_mps;
+
+  const fs::path out = options.out.empty() ? place.directory.root() / "drives" : options.out;
+  on_disk("create", out, [&] { fs::create_directories(out); });
+  const fs::path film = out / (name + ".mp4"), sheet = out / (name + ".png"),
+                 player = out / (name + ".html");
+  write_contact_sheet(clips, options.interval_s, sheet);
+  write_file(player, player_page(clips));
+  int shown = -1;
+  write_film(clips, film, [&](double share) {
+    const int percent = static_cast<int>(100 * share);
+    if (percent / 10 == shown / 10 && shown >= 0) return;
+    shown = percent;
+    fmt::print("film {} %\n", percent);
+    std::fflush(stdout);
+  });
+  double seconds = 0.0;
+  for (const Clip& clip : clips) seconds += clip.duration_s();
+  fmt::print("{:.0f} s of driving{}\n  film {}\n  contact sheet {}\n  player {}\n", seconds,
+             clips.back().trace.collision ? ", ends with a collision" : "", film.string(),
+             sheet.string(), player.string());
+  return 0;
+}
+
+}  // namespace corridor::cluster
