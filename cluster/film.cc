@@ -256,9 +256,21 @@ void draw_mop_values(Canvas& canvas, const Clip& clip, const TracedStep& step, d
   }
 }
 
-// What the ego did up to now: speed with its set-point, and place across the road.
+// To whoever is in the ego's way ahead; this far when nobody is.
+constexpr double kGapMax_m = 50.0;
+double gap_ahead_m(const TracedScene& scene) {
+  double gap_m = kGapMax_m;
+  for (const TracedVehicle& other : scene.others) {
+    const double aside_m = std::abs(other.d_m - scene.ego.d_m);
+    if (other.s_m <= scene.ego.s_m || aside_m >= (other.width_m + scene.ego.width_m) / 2) continue;
+    gap_m = std::min(gap_m, std::max(0.0, other.s_m - other.length_m - scene.ego.s_m));
+  }
+  return gap_m;
+}
+
+// What the ego did up to now: speed, the gap ahead, and place across the road.
 void draw_history(Canvas& canvas, const Clip& clip, double time_s, double left, double top) {
-  constexpr double kPlotWidth = 520.0, kPlotHeight = 70.0;
+  constexpr double kPlotWidth = 520.0, kPlotHeight = 44.0, kPlotEvery = 68.0;
   const double limit_mps = 1.1 * clip.trace.speed_limit_mps;
   const double road_m = clip.trace.lanes * clip.trace.lane_width_m;
   const double duration_s = std::max(clip.duration_s(), clip.trace.step_s);
@@ -285,7 +297,11 @@ void draw_history(Canvas& canvas, const Clip& clip, double time_s, double left, 
                          step.decision->mop_reward);
   }
   plot(top + 20, speed, limit_mps, [&](double t) { return clip.scene_at(t).ego.speed_mps; });
-  const double lateral_top = top + 20 + kPlotHeight + 28;
+  plot(top + 20 + kPlotEvery,
+       fmt::format("gap ahead {:.0f} m (at most {:g})", gap_ahead_m(clip.scene_at(time_s)),
+                   kGapMax_m),
+       kGapMax_m, [&](double t) { return gap_ahead_m(clip.scene_at(t)); });
+  const double lateral_top = top + 20 + 2 * kPlotEvery;
   plot(lateral_top, "place across the road", road_m,
        [&](double t) { return clip.scene_at(t).ego.d_m; });
   canvas.colour(kLine);
