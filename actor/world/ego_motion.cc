@@ -1,5 +1,7 @@
 #include "actor/world/ego_motion.h"
 
+#include <algorithm>
+
 #include "actor/vehicle/ode_vehicle.h"
 #include "actor/world/dynamic_motion.h"
 #include "actor/world/kinematic_motion.h"
@@ -25,6 +27,11 @@ std::unique_ptr<EgoMotion> make_ego_motion(const DynamicsSettings& dynamics,
   return std::make_unique<DynamicMotion>(
       std::make_unique<vehicle::OdeVehicle>(car, tyre, slips ? kSlipStep_s : kWebotsStep_s), car,
       tyre, dynamics, road, ego);
+}
+
+double on_road_m(double d_m, const RoadSettings& road, const EgoSettings& size) {
+  const double margin_m = size.width_m / 2;
+  return std::clamp(d_m, margin_m, road.lanes * road.lane_width_m - margin_m);
 }
 
 }  // namespace corridor::world

@@ -10,7 +10,7 @@
 
 namespace corridor::world {
 
-// The ego in three ways, which differ only where a car has dynamics, or measurements errors.
+// The ego in three ways, which differ only where a car has dynamics, or where measuring has errors.
 struct Motion {
   driving::Ego ego;        // as it is
   driving::Ego measured;   // as planners see it
@@ -30,5 +30,9 @@ class EgoMotion {
 // Of dynamics.world. The whole body stays on the road.
 std::unique_ptr<EgoMotion> make_ego_motion(const DynamicsSettings& dynamics,
                                            const RoadSettings& road, const EgoSettings& ego);
+
+// Nearest to `d_m`, with the ego's whole body on the road: SUMO loses a vehicle whose middle is off
+// it.
+double on_road_m(double d_m, const RoadSettings& road, const EgoSettings& size);
 
 }  // namespace corridor::world

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "actor/world/ego_motion.h"
 #include "proto/random.h"
 
 namespace corridor::world {
@@ -39,11 +40,6 @@ driving::Ego measured(const driving::Ego& ego, const MeasurementError& error,
   result.d_m = on_road_m(ego.d_m + error.across_m, road, size);
   result.speed_mps = std::max(0.0, ego.speed_mps + error.speed_mps);
   return result;
-}
-
-double on_road_m(double d_m, const RoadSettings& road, const EgoSettings& size) {
-  const double margin_m = size.width_m / 2;
-  return std::clamp(d_m, margin_m, road.lanes * road.lane_width_m - margin_m);
 }
 
 }  // namespace corridor::world

@@ -22,8 +22,4 @@ MeasurementError measurement_error(const DynamicsSettings& settings, std::uint64
 driving::Ego measured(const driving::Ego& ego, const MeasurementError& error,
                       const RoadSettings& road, const EgoSettings& size);
 
-// Nearest to `d_m`, with the ego's whole body on the road: SUMO loses a vehicle whose middle is off
-// it.
-double on_road_m(double d_m, const RoadSettings& road, const EgoSettings& size);
-
 }  // namespace corridor::world

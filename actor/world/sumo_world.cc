@@ -9,7 +9,6 @@
 #include <utility>
 #include <xercesc/util/PlatformUtils.hpp>
 
-#include "actor/world/measurement.h"
 #include "proto/failure.h"
 #include "proto/random.h"
 

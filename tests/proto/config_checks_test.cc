@@ -30,6 +30,14 @@ const std::vector<Contradiction>& contradictions() {
          c.traffic.window_m = 125.0;
        },
        "road.length_m = 10449 is too short for an episode at the speed limit: 10450 are needed"},
+      {[](RunConfig& c) { c.simulation.step_s = 1.0, c.simulation.substeps = 3; },
+       "simulation.step_s = 1 in simulation.substeps = 3 is no whole number of milliseconds"},
+      {[](RunConfig& c) {
+         c.simulation.step_s = 1.0, c.simulation.substeps = 8, c.dynamics.world = "slip";
+       },
+       "simulation.step_s = 1 in simulation.substeps = 8 is no multiple of 0.05"},
+      {[](RunConfig& c) { c.dynamics.actuation_delay_s = 0.12; },
+       "dynamics.actuation_delay_s = 0.12 is no multiple of 0.05"},
       {[](RunConfig& c) { c.traffic.vehicles_min = 16, c.traffic.vehicles_max = 15; },
        "traffic.vehicles_min = 16 is above traffic.vehicles_max = 15"},
       {[](RunConfig& c) { c.traffic.speed_factor_min = 0.9, c.traffic.speed_factor_mean = 0.8; },
