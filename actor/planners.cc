@@ -14,8 +14,7 @@ QBehaviourPlanner::QBehaviourPlanner(const RunConfig& config, std::span<const fl
       observation_(static_cast<std::size_t>(config.shape(Phase::kBp).observations)) {}
 
 driving::Command QBehaviourPlanner::decide(const driving::Situation& situation) {
-  driving::observe_bp(situation.scene, situation.previous, settings_, observation_);
-  return static_cast<driving::Command>(values_.greedy(observation_));
+  return static_cast<driving::Command>(policy::argmax(values(situation)));
 }
 
 std::span<const float> QBehaviourPlanner::values(const driving::Situation& situation) {
@@ -29,8 +28,7 @@ QMotionPlanner::QMotionPlanner(const RunConfig& config, std::span<const float> p
       observation_(static_cast<std::size_t>(config.shape(Phase::kMop).observations)) {}
 
 int QMotionPlanner::decide(const driving::Situation& situation, const driving::Window& window) {
-  driving::observe_mop(situation.scene, situation.gaps, window, settings_, observation_);
-  return values_.greedy(observation_);
+  return policy::argmax(values(situation, window));
 }
 
 std::span<const float> QMotionPlanner::values(const driving::Situation& situation,

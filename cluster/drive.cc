@@ -2,7 +2,6 @@
 
 #include <spdlog/fmt/fmt.h>
 
-#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -10,14 +9,11 @@
 #include "cluster/clip.h"
 #include "cluster/evaluation_result.h"
 #include "cluster/film.h"
-#include "cluster/local.h"
 #include "cluster/player.h"
+#include "cluster/traced_episode.h"
 #include "proto/failure.h"
-#include "proto/planner_pairs.h"
 #include "proto/run_config.h"
 #include "proto/run_directory.h"
-#include "proto/subprocess.h"
-#include "scenarios/sumo_files.h"
 
 namespace corridor::cluster {
 namespace {
@@ -35,17 +31,8 @@ struct Place {
 };
 
 EpisodeTrace traced(const Place& place, std::vector<std::string> arguments) {
-  constexpr std::chrono::minutes kPatience{10};
-  arguments.insert(arguments.begin(), place.directory.root().string());
   arguments.insert(arguments.end(), {"--networks", place.trained.root().string()});
-  const auto driven =
-      run_subprocess(program_directory() / "corridor-actor", arguments, "", kPatience);
-  if (!driven) throw Failure("the episode was not driven within ten minutes");
-  if (driven->status != 0) {
-    throw Failure("{}", driven->errors.substr(0, driven->errors.find('\n')));
-  }
-  return parse_episode_trace(nlohmann::json::parse(driven->output, nullptr, false),
-                             "what corridor-actor drove");
+  return traced_by_actor(place.directory, arguments, std::chrono::minutes(10));
 }
 
 EpisodeTrace recorded(const Place& place, const fs::path& file) {
@@ -82,12 +69,9 @@ std::vector<Clip> collisions(const Place& place, const DriveOptions& options) {
 
 Place place_of(const DriveOptions& options) {
   const RunDirectory trained = RunDirectory::open(options.run);
-  const bool own = options.world.scenario.empty() && options.world.settings.empty();
-  const RunDirectory directory = own ? trained : world_directory(trained, options.world);
+  const RunDirectory directory = directory_to_drive_in(trained, options.world);
   const RunConfig config = load_run_config(directory.config());
-  if (!fs::exists(directory.network())) {  // of an exported run
-    scenarios::write_sumo_files(config, directory.network().parent_path());
-  }
+  complete_sumo_files(directory, config);
   return {trained, directory, config};
 }
 

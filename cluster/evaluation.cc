@@ -137,10 +137,19 @@ RunDirectory world_directory(const RunDirectory& run, const EvaluationWorld& wor
   return directory;
 }
 
+RunDirectory directory_to_drive_in(const RunDirectory& run, const EvaluationWorld& world) {
+  const bool own = world.scenario.empty() && world.settings.empty();
+  return own ? run : world_directory(run, world);
+}
+
+void complete_sumo_files(const RunDirectory& directory, const RunConfig& config) {
+  if (std::filesystem::exists(directory.network())) return;
+  scenarios::write_sumo_files(config, directory.network().parent_path());
+}
+
 int evaluate(const EvaluateOptions& options) {
   const RunDirectory trained = RunDirectory::open(options.run);
-  const bool own_world = options.world.scenario.empty() && options.world.settings.empty();
-  const RunDirectory directory = own_world ? trained : world_directory(trained, options.world);
+  const RunDirectory directory = directory_to_drive_in(trained, options.world);
   const RunConfig config = load_run_config(directory.config());
   const std::int64_t steps = options.steps.value_or(config.evaluation.steps);
   if (steps < 1) throw Failure("--steps {}: at least 1 is needed", steps);
@@ -149,9 +158,7 @@ int evaluate(const EvaluateOptions& options) {
   for (const EvaluationJob& job : jobs) check_can_drive(job.planner, trained, config);
   const int parallel = parallel_jobs(options.jobs);
   if (!options.json.empty()) check_can_write(options.json);
-  if (!std::filesystem::exists(directory.network())) {  // of an exported run
-    scenarios::write_sumo_files(config, directory.network().parent_path());
-  }
+  complete_sumo_files(directory, config);
 
   std::vector<ProcessPlan> plan;
   std::vector<StepTask> tasks;

@@ -40,6 +40,12 @@ struct EvaluateOptions {
 // networks do not fit that world, or when the directory holds what was driven with other settings.
 RunDirectory world_directory(const RunDirectory& run, const EvaluationWorld& world);
 
+// The run itself where the world is its own, else world_directory().
+RunDirectory directory_to_drive_in(const RunDirectory& run, const EvaluationWorld& world);
+
+// Writes SUMO's files where they are missing: an exported run has none.
+void complete_sumo_files(const RunDirectory& directory, const RunConfig& config);
+
 // Drives each planner on the test episodes of each seed and prints the table. Returns the exit
 // status: 0, or 128 + signal when stopped by one. Throws Failure for planners that there are not or
 // that this run cannot drive yet, and when a process fails.

@@ -7,7 +7,6 @@
 #include <array>
 #include <chrono>
 #include <cmath>
-#include <memory>
 #include <numbers>
 #include <string>
 
@@ -268,22 +267,42 @@ double gap_ahead_m(const TracedScene& scene) {
   return gap_m;
 }
 
-// What the ego did up to now: speed, the gap ahead, and place across the road.
-void draw_history(Canvas& canvas, const Clip& clip, double time_s, double left, double top) {
+// What the ego did, at every kEvery_s of a clip: once for all its frames.
+struct History {
+  static constexpr double kEvery_s = 0.1;
+  std::vector<double> speed_mps, gap_m, d_m;
+};
+
+History history_of(const Clip& clip) {
+  History history;
+  for (double t = 0.0; t <= clip.duration_s() + 1e-9; t += History::kEvery_s) {
+    const TracedScene scene = clip.scene_at(t);
+    history.speed_mps.push_back(scene.ego.speed_mps);
+    history.gap_m.push_back(gap_ahead_m(scene));
+    history.d_m.push_back(scene.ego.d_m);
+  }
+  return history;
+}
+
+// Up to now: speed, the gap ahead, and place across the road.
+void draw_history(Canvas& canvas, const Clip& clip, const History& history, double time_s,
+                  double left, double top) {
   constexpr double kPlotWidth = 520.0, kPlotHeight = 44.0, kPlotEvery = 68.0;
   const double limit_mps = 1.1 * clip.trace.speed_limit_mps;
   const double road_m = clip.trace.lanes * clip.trace.lane_width_m;
   const double duration_s = std::max(clip.duration_s(), clip.trace.step_s);
-  const auto plot = [&](double plot_top, const std::string& title, double top_value, auto value) {
+  const auto plot = [&](double plot_top, const std::string& title, double top_value,
+                        const std::vector<double>& values) {
     canvas.colour(kInk);
     canvas.text(left, plot_top - 6, 13, title);
     canvas.colour(kAsphalt);
     canvas.rectangle(left, plot_top, kPlotWidth, kPlotHeight);
     std::vector<std::array<double, 2>> points;
-    constexpr double kEvery_s = 0.1;
-    for (double t = 0.0; t <= time_s + 1e-9; t += kEvery_s) {
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      const double t = static_cast<double>(i) * History::kEvery_s;
+      if (t > time_s + 1e-9) break;
       points.push_back({left + kPlotWidth * t / duration_s,
-                        plot_top + kPlotHeight * (1.0 - value(t) / top_value)});
+                        plot_top + kPlotHeight * (1.0 - values[i] / top_value)});
     }
     canvas.colour(kEgo);
     canvas.line(points, 2.0);
@@ -296,14 +315,13 @@ void draw_history(Canvas& canvas, const Clip& clip, double time_s, double left, 
                          kKphPerMps * step.decision->set_point_mps, step.decision->bp_reward,
                          step.decision->mop_reward);
   }
-  plot(top + 20, speed, limit_mps, [&](double t) { return clip.scene_at(t).ego.speed_mps; });
+  plot(top + 20, speed, limit_mps, history.speed_mps);
   plot(top + 20 + kPlotEvery,
        fmt::format("gap ahead {:.0f} m (at most {:g})", gap_ahead_m(clip.scene_at(time_s)),
                    kGapMax_m),
-       kGapMax_m, [&](double t) { return gap_ahead_m(clip.scene_at(t)); });
+       kGapMax_m, history.gap_m);
   const double lateral_top = top + 20 + 2 * kPlotEvery;
-  plot(lateral_top, "place across the road", road_m,
-       [&](double t) { return clip.scene_at(t).ego.d_m; });
+  plot(lateral_top, "place across the road", road_m, history.d_m);
   canvas.colour(kLine);
   for (int lane = 1; lane < clip.trace.lanes; ++lane) {
     const double y = lateral_top + kPlotHeight * (1.0 - lane * clip.trace.lane_width_m / road_m);
@@ -311,7 +329,7 @@ void draw_history(Canvas& canvas, const Clip& clip, double time_s, double left, 
   }
 }
 
-void draw_frame(Canvas& canvas, const Clip& clip, double time_s) {
+void draw_frame(Canvas& canvas, const Clip& clip, const History& history, double time_s) {
   canvas.colour(kInk);
   canvas.text(kMargin, 28, 17, clip.title);
   canvas.text(kWidth - kMargin, 28, 17, fmt::format("{:.1f} s", clip.start_s + time_s), 1.0);
@@ -320,7 +338,7 @@ void draw_frame(Canvas& canvas, const Clip& clip, double time_s) {
   const TracedStep& step = clip.step_at(time_s);
   draw_bp_values(canvas, step, kMargin, top);
   draw_mop_values(canvas, clip, step, kMargin + 270, top);
-  draw_history(canvas, clip, time_s, kWidth - kMargin - 520, top);
+  draw_history(canvas, clip, history, time_s, kWidth - kMargin - 520, top);
 }
 
 int frame_height(const Clip& clip) {
@@ -347,12 +365,16 @@ class FrameFolder {
   fs::path path_;
 };
 
+void write_frame(const Clip& clip, const History& history, double time_s, const fs::path& file) {
+  Canvas canvas(kWidth, frame_height(clip));
+  draw_frame(canvas, clip, history, time_s);
+  canvas.write(file);
+}
+
 }  // namespace
 
 void write_frame(const Clip& clip, double time_s, const fs::path& file) {
-  Canvas canvas(kWidth, frame_height(clip));
-  draw_frame(canvas, clip, time_s);
-  canvas.write(file);
+  write_frame(clip, history_of(clip), time_s, file);
 }
 
 void write_contact_sheet(const std::vector<Clip>& clips, double interval_s, const fs::path& file) {
@@ -408,10 +430,11 @@ void write_film(const std::vector<Clip>& clips, const fs::path& file,
   FrameFolder folder(file);
   int frame = 0;
   for (const Clip& clip : clips) {
+    const History history = history_of(clip);
     const int frames = static_cast<int>(clip.duration_s() * kFramesPerSecond + 1e-9);
     for (int i = 0; i <= frames; ++i) {
       const double time_s = static_cast<double>(i) / kFramesPerSecond;
-      write_frame(clip, time_s, folder.path() / fmt::format("{:06}.png", frame++));
+      write_frame(clip, history, time_s, folder.path() / fmt::format("{:06}.png", frame++));
       progress(std::min(1.0, frame / (all_s * kFramesPerSecond + 1.0)));
     }
   }

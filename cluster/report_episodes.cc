@@ -6,11 +6,10 @@
 #include <chrono>
 #include <tuple>
 
-#include "cluster/local.h"
+#include "cluster/traced_episode.h"
 #include "proto/failure.h"
 #include "proto/planner_pairs.h"
 #include "proto/run_directory.h"
-#include "proto/subprocess.h"
 
 namespace corridor::cluster {
 namespace {
@@ -33,16 +32,9 @@ std::optional<Evaluated> evaluated_as_trained(const std::vector<RunGroup>& group
   return std::nullopt;
 }
 
-std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
-
 EpisodeTrace drive_again(const RunDirectory& directory, const std::string& name) {
   const std::filesystem::path file = directory.episodes() / (name + ".json");
-  const auto driven = run_subprocess(program_directory() / "corridor-actor",
-                                     {directory.root().string(), "--trace", file.string()}, "",
-                                     std::chrono::minutes(1));
-  if (!driven) throw Failure("{} was not driven again within a minute", file.string());
-  if (driven->status != 0) throw Failure("{}", first_line(driven->errors));
-  return parse_episode_trace(nlohmann::json::parse(driven->output, nullptr, false), file.string());
+  return traced_by_actor(directory, {"--trace", file.string()}, std::chrono::minutes(1));
 }
 
 }  // namespace

@@ -120,7 +120,6 @@ StepResult SumoWorld::step(const driving::Trajectory& trajectory) {
       Motion motion = motion_->drive(trajectory, from_s, to_s);
       motion.ego.acceleration_mps2 = (motion.ego.speed_mps - before_mps) / to_s;
       motion.measured.acceleration_mps2 = motion.ego.acceleration_mps2;
-      motion.reference.acceleration_mps2 = motion.ego.acceleration_mps2;
       place(motion.ego);
       // SUMO moves the others first, past the ego where it was, and then places the ego: after the
       // step all are at the same instant.

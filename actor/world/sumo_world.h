@@ -1,8 +1,8 @@
 // The World that SUMO simulates. The only user of libsumo.
 //
 // The ego moves along its trajectories as [dynamics] says, or SUMO drives it; SUMO drives all
-// others. One step costs about 0.1 ms with 15 vehicles, `begin`
-// about 5 ms and a few KB that libsumo leaks.
+// others. One step costs about 0.1 ms with 15 vehicles, `begin` about 5 ms and a few KB that
+// libsumo leaks.
 #pragma once
 
 #include <cstdint>
