@@ -19,6 +19,8 @@ namespace corridor::cluster {
 namespace {
 
 constexpr int kFailureStatus = 1;  // proto/program.h
+// For a process to become its program, or to say why it cannot.
+constexpr int kExecPatience_ms = 2000;
 
 std::vector<std::string> environment_of(const Pulse& pulse) {
   // The processes share the cores already: threads of their own would only get in each other's way.
@@ -106,7 +108,10 @@ void Children::start(const ProcessPlan& plan) {
     setpgid(pid, pid);  // here as well: whoever comes first
     running_.push_back({plan.name, plan.log, static_cast<std::uintmax_t>(log_start), pid,
                         std::move(pulse), 0, Clock::now(), false});
-    if (read(errors[0], &error, sizeof error) < 0) error = errno;
+    // One that is stopped before it has become the program says nothing, and is found as hung.
+    pollfd said{errors[0], POLLIN, 0};
+    const bool over = poll(&said, 1, kExecPatience_ms) > 0;
+    if (over && read(errors[0], &error, sizeof error) < 0) error = errno;
   }
   close(errors[0]);
   if (error != 0) {

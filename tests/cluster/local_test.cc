@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <pthread.h>
 #include <signal.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
@@ -318,6 +319,30 @@ TEST_F(Local, AQueueEndsWithItsFirstFailure) {
               ThrowsMessage<Failure>(HasSubstr("bad ended with status 2")));
   expect_gone("good");
   EXPECT_FALSE(exists("never.pid"));
+}
+
+// Set: the next process that is forked stops itself before it becomes a program.
+bool stop_next_child = false;
+
+TEST_F(Local, AProcessThatIsStoppedBeforeItIsItsProgramIsFoundAsHungAndStartedAgain) {
+  ASSERT_EQ(pthread_atfork(
+                nullptr, [] { stop_next_child = false; },
+                [] {
+                  if (stop_next_child) raise(SIGSTOP);
+                }),
+            0);
+  stop_next_child = true;
+  Limits limits = kLimits;
+  limits.hung = Milliseconds(1000);
+  int deaths = 0;
+  Supervision supervision;
+  supervision.died = [&](const Ended& ended, bool) {
+    EXPECT_TRUE(ended.hung);
+    ++deaths;
+  };
+  run_together({script("main", "exit 0")}, "main", limits, supervision);
+  EXPECT_EQ(deaths, 1);
+  EXPECT_TRUE(exists("main.pid"));
 }
 
 }  // namespace
