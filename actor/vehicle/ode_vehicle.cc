@@ -19,6 +19,10 @@ constexpr double kCruiseGain_per_s = 5.0;
 constexpr double kTraction = 0.8;
 // Below it a slip tyre's slip is reckoned at this speed: at a standstill it would be infinite.
 constexpr double kSlipSpeedMin_mps = 0.5;
+// A tyre's tangent is taken to rise at least by this share of its stiffness, and its load to be at
+// least so much: both are divided by.
+constexpr double kSlopeMin = 0.01;
+constexpr double kLoadMin_n = 10.0;
 
 constexpr int kWheels = 4;  // front left, front right, rear left, rear right
 constexpr bool is_front(int wheel) { return wheel < 2; }
@@ -81,7 +85,11 @@ class OdeVehicle::Simulation {
       put(wheel, ahead_m, left_m, car_.tyre_radius_m);
       const double spin_radps = start.speed_mps / car_.tyre_radius_m;
       dBodySetAngularVel(wheel, -sin * spin_radps, cos * spin_radps, 0.0);
-      wheels_[static_cast<std::size_t>(i)] = {wheel, suspend(wheel)};
+      const double axle_share =
+          is_front(i) ? car_.front_axle_share() : 1.0 - car_.front_axle_share();
+      Wheel& placed = wheels_[static_cast<std::size_t>(i)];
+      placed = {wheel, suspend(wheel), {}};
+      placed.forces.f1[2] = car_.mass_kg() * kGravity_mps2 * axle_share / 2;
     }
   }
 
@@ -91,10 +99,10 @@ class OdeVehicle::Simulation {
                    -car_.steering_rate_max_radps, car_.steering_rate_max_radps);
     steering_rad_ += lag_radps * time_step_s_;
     for (int i = 0; i < kWheels; ++i) {
-      const Wheel& wheel = wheels_[static_cast<std::size_t>(i)];
+      Wheel& wheel = wheels_[static_cast<std::size_t>(i)];
       if (is_front(i)) hold_steering(wheel, side_of(i));
       turn(wheel, is_front(i));
-      touch_road(wheel, is_front(i));
+      touch_road(wheel);
     }
     dWorldStep(world_, time_step_s_);
     dJointGroupEmpty(contacts_);
@@ -128,6 +136,7 @@ class OdeVehicle::Simulation {
   struct Wheel {
     dBodyID body = nullptr;
     dJointID suspension = nullptr;
+    dJointFeedback forces{};  // of the road in the last step
   };
 
   void clear() {
@@ -198,7 +207,7 @@ class OdeVehicle::Simulation {
     return rotation[1] * turning[0] + rotation[5] * turning[1] + rotation[9] * turning[2];
   }
 
-  void touch_road(const Wheel& wheel, bool front) {
+  void touch_road(Wheel& wheel) {
     const dReal* hub = dBodyGetPosition(wheel.body);
     const double depth_m = car_.tyre_radius_m - hub[2];
     if (depth_m < 0.0) return;
@@ -217,18 +226,31 @@ class OdeVehicle::Simulation {
     contact.surface.mu = contact.surface.mu2 = tyre_.friction;
     contact.surface.soft_cfm = tyre_.softness_cfm;
     contact.surface.soft_erp = kContactErp;
-    if (tyre_.stiffness > 0.0) {
-      const dReal* velocity = dBodyGetLinearVel(wheel.body);
-      const double rolling_mps =
-          std::abs(contact.fdir1[0] * velocity[0] + contact.fdir1[1] * velocity[1]);
-      const double share = front ? car_.front_axle_share() : 1.0 - car_.front_axle_share();
-      const double load_n = car_.mass_kg() * kGravity_mps2 * share / 2;
-      // ODE lets the contact slip by so many m/s a newton.
-      const double slip = std::max(rolling_mps, kSlipSpeedMin_mps) / (tyre_.stiffness * load_n);
-      contact.surface.mode |= dContactSlip1 | dContactSlip2;
-      contact.surface.slip1 = contact.surface.slip2 = slip;
-    }
-    dJointAttach(dJointCreateContact(world_, contacts_, &contact), wheel.body, nullptr);
+    if (tyre_.stiffness > 0.0) slip(wheel, contact);
+    dJointID joint = dJointCreateContact(world_, contacts_, &contact);
+    dJointAttach(joint, wheel.body, nullptr);
+    dJointSetFeedback(joint, &wheel.forces);
+  }
+
+  // ODE lets a contact slip by so many m/s a newton, from a speed at which it has no force: the
+  // tangent to the tyre's law at the present slip, so that the law is integrated implicitly.
+  void slip(const Wheel& wheel, dContact& contact) const {
+    const dReal* velocity = dBodyGetLinearVel(wheel.body);
+    const dReal* turning = dBodyGetAngularVel(wheel.body);
+    const double ahead_x = contact.fdir1[0], ahead_y = contact.fdir1[1];
+    const double down_m = dBodyGetPosition(wheel.body)[2];
+    const double rolling_mps =
+        std::max(std::abs(ahead_x * velocity[0] + ahead_y * velocity[1]), kSlipSpeedMin_mps);
+    // Of the contact point, to the left.
+    const double sliding_mps = -ahead_y * (velocity[0] - down_m * turning[1]) +
+                               ahead_x * (velocity[1] + down_m * turning[0]);
+    const double load_n = std::max(wheel.forces.f1[2], kLoadMin_n);
+    const LateralForce force = lateral_force(tyre_, sliding_mps / rolling_mps);
+    const double slope = std::max(force.per_rad, kSlopeMin * tyre_.stiffness);
+    contact.surface.mode |= dContactSlip1 | dContactSlip2 | dContactMotion2;
+    contact.surface.slip1 = rolling_mps / (tyre_.stiffness * load_n);
+    contact.surface.slip2 = rolling_mps / (slope * load_n);
+    contact.surface.motion2 = sliding_mps - force.per_load / slope * rolling_mps;
   }
 
   dWorldID world_ = nullptr;

@@ -1,5 +1,7 @@
 #include "actor/vehicle/vehicle_model.h"
 
+#include <cmath>
+
 namespace corridor::vehicle {
 
 CarModel bmw_x5() {
@@ -36,6 +38,13 @@ CarModel toyota_prius() {
   // 0 to 100 km/h in 10.7 s, not 7.
   car.drive_mps2 *= 7.0 / 10.7;
   return car;
+}
+
+LateralForce lateral_force(const TyreModel& tyre, double slip_rad) {
+  const double scale = tyre.stiffness / (tyre.shape * tyre.friction);
+  const double angle_rad = tyre.shape * std::atan(scale * slip_rad);
+  return {tyre.friction * std::sin(angle_rad),
+          tyre.stiffness * std::cos(angle_rad) / (1.0 + scale * scale * slip_rad * slip_rad)};
 }
 
 }  // namespace corridor::vehicle

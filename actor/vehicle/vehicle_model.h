@@ -36,17 +36,28 @@ CarModel bmw_x5();
 // ToyotaPrius.proto; what it does not say is as of the X5.
 CarModel toyota_prius();
 
+// A tyre's forces, as shares of its load.
 struct TyreModel {
-  double friction = 1.0;  // Coulomb's, of force to load
-  // Lateral (longitudinal) force per load and slip angle (slip), in the linear range; 0: no slip
-  // but when friction gives way, as in Webots' highway worlds.
+  double friction = 1.0;  // Coulomb's: the most, in either direction
+  // Of longitudinal force and slip, and of lateral force and slip angle while both are small; 0: no
+  // slip but when friction gives way, as in Webots' highway worlds.
   double stiffness = 0.0;
+  // Pacejka's C of the lateral force, which grows to friction and falls again beyond.
+  double shape = 1.0;
   double softness_cfm = 1e-5;  // of the contact
 };
 // highway.wbt of Webots.
-inline constexpr TyreModel kWebotsTyre{8.0, 0.0, 1e-5};
-// 20.9 per rad: CommonRoad's single-track model (Althoff et al. 2017, vehicle models), from Pacejka
-// tyres.
-inline constexpr TyreModel slip_tyre(double friction) { return {friction, 20.9, 1e-5}; }
+inline constexpr TyreModel kWebotsTyre{.friction = 8.0};
+// p_ky1 and p_cy1 of CommonRoad's multibody model (Althoff et al. 2017, vehicle models), there with
+// a friction of 1.0489. Its stiffness does not depend on friction.
+inline constexpr TyreModel slip_tyre(double friction) { return {friction, 21.92, 1.3507}; }
+
+// Lateral force and its derivative by the slip angle (Pacejka's magic formula without shifts and
+// curvature). A tyre without stiffness has none.
+struct LateralForce {
+  double per_load = 0.0;
+  double per_rad = 0.0;
+};
+LateralForce lateral_force(const TyreModel& tyre, double slip_rad);
 
 }  // namespace corridor::vehicle

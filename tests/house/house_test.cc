@@ -100,6 +100,7 @@ TEST(House, EachForeignLibraryIsUsedByItsAdapterOnly) {
       {{"google/protobuf", "cluster/tensorboard_event.pb.h", "boost/"}, {"cluster/tensorboard.cc"}},
       {{"Eigen/"}, {"actor/policy/", "actor/driving/", "actor/vehicle/path_tracker."}},
       {{"ode/"}, {"actor/vehicle/ode_vehicle.cc"}},
+      {{"webots/"}, {"actor/vehicle/webots_vehicle.h"}},
       {{"cairo"}, {"cluster/film.cc"}},
   };
   for (const std::string& file : sources()) {
