@@ -8,7 +8,9 @@
 #include <chrono>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <string>
+#include <utility>
 
 #include "proto/failure.h"
 #include "proto/run_directory.h"
@@ -255,78 +257,118 @@ void draw_mop_values(Canvas& canvas, const Clip& clip, const TracedStep& step, d
   }
 }
 
-// To whoever is in the ego's way ahead; this far when nobody is.
 constexpr double kGapMax_m = 50.0;
-double gap_ahead_m(const TracedScene& scene) {
+// Whoever is in the ego's way, nearer than kGapMax_m.
+struct Leader {
   double gap_m = kGapMax_m;
+  std::optional<double> speed_mps;  // of none when there is nobody
+};
+Leader leader_of(const TracedScene& scene) {
+  Leader leader;
   for (const TracedVehicle& other : scene.others) {
     const double aside_m = std::abs(other.d_m - scene.ego.d_m);
     if (other.s_m <= scene.ego.s_m || aside_m >= (other.width_m + scene.ego.width_m) / 2) continue;
-    gap_m = std::min(gap_m, std::max(0.0, other.s_m - other.length_m - scene.ego.s_m));
+    const double gap_m = std::max(0.0, other.s_m - other.length_m - scene.ego.s_m);
+    if (gap_m < leader.gap_m) leader = {gap_m, other.speed_mps};
   }
-  return gap_m;
+  return leader;
 }
 
-// What the ego did, at every kEvery_s of a clip: once for all its frames.
+// What the ego did, and its leader, at every kEvery_s of a clip: once for all its frames.
 struct History {
   static constexpr double kEvery_s = 0.1;
-  std::vector<double> speed_mps, gap_m, d_m;
+  using Values = std::vector<std::optional<double>>;
+  Values speed_mps, leader_mps, gap_m, d_m;
 };
 
 History history_of(const Clip& clip) {
   History history;
   for (double t = 0.0; t <= clip.duration_s() + 1e-9; t += History::kEvery_s) {
     const TracedScene scene = clip.scene_at(t);
+    const Leader leader = leader_of(scene);
     history.speed_mps.push_back(scene.ego.speed_mps);
-    history.gap_m.push_back(gap_ahead_m(scene));
+    history.leader_mps.push_back(leader.speed_mps);
+    history.gap_m.push_back(leader.gap_m);
     history.d_m.push_back(scene.ego.d_m);
   }
   return history;
 }
 
-// Up to now: speed, the gap ahead, and place across the road.
-void draw_history(Canvas& canvas, const Clip& clip, const History& history, double time_s,
-                  double left, double top) {
-  constexpr double kPlotWidth = 520.0, kPlotHeight = 44.0, kPlotEvery = 68.0;
-  const double limit_mps = 1.1 * clip.trace.speed_limit_mps;
-  const double road_m = clip.trace.lanes * clip.trace.lane_width_m;
-  const double duration_s = std::max(clip.duration_s(), clip.trace.step_s);
-  const auto plot = [&](double plot_top, const std::string& title, double top_value,
-                        const std::vector<double>& values) {
-    canvas.colour(kInk);
-    canvas.text(left, plot_top - 6, 13, title);
-    canvas.colour(kAsphalt);
-    canvas.rectangle(left, plot_top, kPlotWidth, kPlotHeight);
+// A curve over a clip's time, drawn up to now, with gaps where there is no value.
+class Plot {
+ public:
+  static constexpr double kWidth = 520.0, kHeight = 44.0, kEvery = 68.0;
+
+  Plot(Canvas& canvas, double left, double top, double top_value, double duration_s)
+      : canvas_(canvas), left_(left), top_(top), top_value_(top_value), duration_s_(duration_s) {}
+
+  void frame(const std::string& title, const std::string& scale) {
+    canvas_.colour(kInk);
+    canvas_.text(left_, top_ - 6, 13, title);
+    canvas_.text(left_ + kWidth, top_ - 6, 11, scale, 1.0);
+    canvas_.colour(kAsphalt);
+    canvas_.rectangle(left_, top_, kWidth, kHeight);
+  }
+
+  void curve(const History::Values& values, double until_s, const Colour& colour) {
+    canvas_.colour(colour);
     std::vector<std::array<double, 2>> points;
     for (std::size_t i = 0; i < values.size(); ++i) {
       const double t = static_cast<double>(i) * History::kEvery_s;
-      if (t > time_s + 1e-9) break;
-      points.push_back({left + kPlotWidth * t / duration_s,
-                        plot_top + kPlotHeight * (1.0 - values[i] / top_value)});
+      if (t > until_s + 1e-9) break;
+      if (values[i]) {
+        points.push_back({left_ + kWidth * t / duration_s_, y(*values[i])});
+      } else if (!points.empty()) {
+        canvas_.line(std::exchange(points, {}), 2.0);
+      }
     }
-    canvas.colour(kEgo);
-    canvas.line(points, 2.0);
-  };
+    if (!points.empty()) canvas_.line(points, 2.0);
+  }
+
+  void level(double value) {
+    canvas_.colour(kLine);
+    canvas_.line({{left_, y(value)}, {left_ + kWidth, y(value)}}, 1.0, 6.0);
+  }
+
+ private:
+  double y(double value) const { return top_ + kHeight * (1.0 - value / top_value_); }
+
+  Canvas& canvas_;
+  double left_, top_, top_value_, duration_s_;
+};
+
+// Up to now: speed and the leader's, the gap to it, and place across the road.
+void draw_history(Canvas& canvas, const Clip& clip, const History& history, double time_s,
+                  double left, double top) {
+  const double limit_mps = 1.1 * clip.trace.speed_limit_mps;
+  const double road_m = clip.trace.lanes * clip.trace.lane_width_m;
+  const double duration_s = std::max(clip.duration_s(), clip.trace.step_s);
+  const TracedScene scene = clip.scene_at(time_s);
+  const Leader leader = leader_of(scene);
   const TracedStep& step = clip.step_at(time_s);
-  std::string speed =
-      fmt::format("speed {:.0f} km/h", kKphPerMps * clip.scene_at(time_s).ego.speed_mps);
+
+  std::string speed = fmt::format("speed {:.0f} km/h", kKphPerMps * scene.ego.speed_mps);
+  if (leader.speed_mps) speed += fmt::format(", leader {:.0f}", kKphPerMps * *leader.speed_mps);
   if (step.decision) {
     speed += fmt::format(", set-point {:.0f}; reward of this step: BP {:.2f}, MoP {:.2f}",
                          kKphPerMps * step.decision->set_point_mps, step.decision->bp_reward,
                          step.decision->mop_reward);
   }
-  plot(top + 20, speed, limit_mps, history.speed_mps);
-  plot(top + 20 + kPlotEvery,
-       fmt::format("gap ahead {:.0f} m (at most {:g})", gap_ahead_m(clip.scene_at(time_s)),
-                   kGapMax_m),
-       kGapMax_m, history.gap_m);
-  const double lateral_top = top + 20 + 2 * kPlotEvery;
-  plot(lateral_top, "place across the road", road_m, history.d_m);
-  canvas.colour(kLine);
-  for (int lane = 1; lane < clip.trace.lanes; ++lane) {
-    const double y = lateral_top + kPlotHeight * (1.0 - lane * clip.trace.lane_width_m / road_m);
-    canvas.line({{left, y}, {left + kPlotWidth, y}}, 1.0, 6.0);
-  }
+  Plot speeds(canvas, left, top + 20, limit_mps, duration_s);
+  speeds.frame(speed, fmt::format("0 to {:.0f} km/h", kKphPerMps * limit_mps));
+  speeds.curve(history.leader_mps, time_s, kOther);
+  speeds.curve(history.speed_mps, time_s, kEgo);
+
+  Plot gap(canvas, left, top + 20 + Plot::kEvery, kGapMax_m, duration_s);
+  gap.frame(
+      leader.speed_mps ? fmt::format("gap to the leader {:.0f} m", leader.gap_m) : "nobody ahead",
+      fmt::format("0 to {:g} m", kGapMax_m));
+  gap.curve(history.gap_m, time_s, kEgo);
+
+  Plot across(canvas, left, top + 20 + 2 * Plot::kEvery, road_m, duration_s);
+  across.frame("place across the road", fmt::format("0 to {:g} m", road_m));
+  across.curve(history.d_m, time_s, kEgo);
+  for (int lane = 1; lane < clip.trace.lanes; ++lane) across.level(lane * clip.trace.lane_width_m);
 }
 
 void draw_frame(Canvas& canvas, const Clip& clip, const History& history, double time_s) {

@@ -41,7 +41,8 @@ Row lqr(const Matrix& a, const State& b, const Matrix& q, double r) {
 
 }  // namespace
 
-PathTracker::PathTracker(const CarModel& car, const TyreModel& tyre, double period_s) : car_(car) {
+PathTracker::PathTracker(const CarModel& car, const TyreModel& tyre, double period_s)
+    : car_(car), period_s_(period_s) {
   CORRIDOR_CHECK(period_s > 0.0, "{} s", period_s);
   const double stiffness = tyre.stiffness > 0.0 ? tyre.stiffness : kNoSlipStiffness;
   const double mass_kg = car.mass_kg();
@@ -92,22 +93,27 @@ PathTracker::Gain PathTracker::gain_at(double speed_mps) const {
   return (1.0 - share) * gains_[below] + share * gains_[above];
 }
 
+// The steering motor's lag, and half the time for which a command is held.
+double PathTracker::preview_s() const { return 1.0 / car_.steering_gain_per_s + period_s_ / 2; }
+
 double PathTracker::steering_rad(const VehicleState& state, const PathPoint& path) const {
   const double v = std::max(state.speed_mps, 0.0);
   const double centre_y_m = state.y_m + to_rear_m_ * std::sin(state.yaw_rad);
   const double lateral_mps = state.lateral_speed_mps + to_rear_m_ * state.yaw_rate_radps;
   const double heading_rad = state.yaw_rad - path.yaw_rad;
-  const double ahead_rad = path.curvature_pm * (car_.wheelbase_m + understeer_ * v * v);
+  const double steering_per_curvature = car_.wheelbase_m + understeer_ * v * v;
   State error;
   error << (centre_y_m - path.y_m) * std::cos(path.yaw_rad),
       lateral_mps + v * std::sin(heading_rad), heading_rad,
-      state.yaw_rate_radps - v * path.curvature_pm, state.steering_rad - ahead_rad;
+      state.yaw_rate_radps - v * path.curvature_pm,
+      state.steering_rad - path.curvature_pm * steering_per_curvature;
   const Gain gain = gain_at(v);
   // In a steady curve the car's heading differs from the path's (Rajamani 3.13).
   const double steady_rad =
       path.curvature_pm * (-to_rear_m_ + to_front_m_ * car_.mass_kg() * v * v /
                                              (rear_stiffness_npr_ * car_.wheelbase_m));
-  const double forward_rad = ahead_rad + gain[2] * steady_rad;
+  const double forward_rad =
+      path.curvature_ahead_pm * steering_per_curvature + gain[2] * steady_rad;
   return forward_rad - gain.dot(error);
 }
 

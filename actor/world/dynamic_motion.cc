@@ -16,6 +16,13 @@ using vehicle::VehicleState;
 constexpr double kBraking_mps2 = 2.5;
 constexpr double kSpeedGain_per_s = 4.0;
 
+// Trajectories move over in equal times at all speeds. Below this one a car goes across as much
+// more slowly as it is slower: along the same curve, on which its corners swing out by 0.13 m.
+constexpr double kFreeSpeed_mps = 10.0;
+double pace_across(const driving::Trajectory& trajectory, double time_s) {
+  return std::min(1.0, trajectory.at(time_s).speed_mps / kFreeSpeed_mps);
+}
+
 double brakes_mps2(const CarModel& car) {
   return 4 * car.brake_nm / car.tyre_radius_m / car.mass_kg();
 }
@@ -58,6 +65,7 @@ void DynamicMotion::begin(const driving::Ego& start, std::uint64_t episode_seed)
 }
 
 Motion DynamicMotion::drive(const driving::Trajectory& trajectory, double from_s, double to_s) {
+  if (from_s == 0.0) across_s_ = 0.0;
   const auto periods = std::lround((to_s - from_s) / kControlPeriod_s);
   const auto steps = std::lround(kControlPeriod_s / car_->time_step_s());
   for (long period = 0; period < periods; ++period) {
@@ -74,6 +82,7 @@ Motion DynamicMotion::drive(const driving::Trajectory& trajectory, double from_s
     car_->set_cruising_speed(now.speed_mps);
     car_->set_brake_intensity(now.brake);
     for (long step = 0; step < steps; ++step) car_->step();
+    across_s_ += pace_across(trajectory, time_s) * kControlPeriod_s;
   }
 
   Motion motion;
@@ -82,10 +91,11 @@ Motion DynamicMotion::drive(const driving::Trajectory& trajectory, double from_s
   motion.measured =
       measured(motion.ego, measurement_error(dynamics_, seed_, instant_), road_, size_);
   // Along the road trajectories begin where the car is: it is its speed that is kept.
-  const driving::TrajectoryPoint planned = trajectory.at(to_s);
   motion.reference = motion.ego;
+  motion.reference.speed_mps = trajectory.at(to_s).speed_mps;
+  // Across it they go on where the last one has got to, in its own time.
+  const driving::TrajectoryPoint planned = trajectory.at(across_s_);
   motion.reference.d_m = planned.d_m;
-  motion.reference.speed_mps = planned.speed_mps;
   motion.reference.lateral_speed_mps = planned.lateral_speed_mps;
   motion.reference.lateral_acceleration_mps2 = planned.lateral_acceleration_mps2;
   return motion;
@@ -95,9 +105,13 @@ DynamicMotion::Controls DynamicMotion::decide(const driving::Trajectory& traject
                                               const VehicleState& measured) const {
   const driving::TrajectoryPoint now = trajectory.at(time_s);
   const driving::TrajectoryPoint soon = trajectory.at(time_s + kControlPeriod_s);
+  const double pace = pace_across(trajectory, time_s);
+  const driving::TrajectoryPoint here = across(trajectory, 0.0, pace);
+  const driving::TrajectoryPoint ahead = across(trajectory, tracker_.preview_s(), pace);
   const double speed_mps = std::max(now.speed_mps, 1.0);
-  const vehicle::PathPoint path{now.d_m, std::atan2(now.lateral_speed_mps, speed_mps),
-                                now.lateral_acceleration_mps2 / (speed_mps * speed_mps)};
+  const vehicle::PathPoint path{here.d_m, std::atan2(here.lateral_speed_mps, speed_mps),
+                                here.lateral_acceleration_mps2 / (speed_mps * speed_mps),
+                                ahead.lateral_acceleration_mps2 / (speed_mps * speed_mps)};
   Controls controls;
   controls.steering_rad = tracker_.steering_rad(measured, path);
   controls.speed_mps = soon.speed_mps;
@@ -106,6 +120,14 @@ DynamicMotion::Controls DynamicMotion::decide(const driving::Trajectory& traject
   if (wanted_mps2 < -kBraking_mps2)
     controls.brake = std::min(1.0, -wanted_mps2 / brakes_mps2(model_));
   return controls;
+}
+
+driving::TrajectoryPoint DynamicMotion::across(const driving::Trajectory& trajectory,
+                                               double ahead_s, double pace) const {
+  driving::TrajectoryPoint point = trajectory.at(across_s_ + pace * ahead_s);
+  point.lateral_speed_mps *= pace;
+  point.lateral_acceleration_mps2 *= pace * pace;
+  return point;
 }
 
 }  // namespace corridor::world

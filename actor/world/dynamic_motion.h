@@ -13,8 +13,8 @@ namespace corridor::world {
 
 class DynamicMotion : public EgoMotion {
  public:
-  // The vehicle's centre of mass follows the trajectories across the road; along it their speed is
-  // kept. The controller decides every kControlPeriod_s.
+  // The vehicle's centre of mass follows the trajectories across the road, a slow one's more slowly
+  // than they ask; along it their speed is kept. The controller decides every kControlPeriod_s.
   DynamicMotion(std::unique_ptr<vehicle::Vehicle> car, const vehicle::CarModel& model,
                 const vehicle::TyreModel& tyre, const DynamicsSettings& dynamics,
                 const RoadSettings& road, const EgoSettings& ego);
@@ -30,6 +30,9 @@ class DynamicMotion : public EgoMotion {
   };
   Controls decide(const driving::Trajectory& trajectory, double time_s,
                   const vehicle::VehicleState& measured) const;
+  // Where across the road the car should be.
+  driving::TrajectoryPoint across(const driving::Trajectory& trajectory, double ahead_s,
+                                  double pace) const;
 
   std::unique_ptr<vehicle::Vehicle> car_;
   vehicle::CarModel model_;
@@ -39,6 +42,7 @@ class DynamicMotion : public EgoMotion {
   EgoSettings size_;
   std::uint64_t seed_ = 0;
   std::uint64_t instant_ = 0;        // of the controller's
+  double across_s_ = 0.0;            // how far along the present trajectory's way across the road
   std::size_t delayed_;              // periods between a decision and its effect
   std::vector<Controls> under_way_;  // decided, not yet in effect; the oldest first
 };

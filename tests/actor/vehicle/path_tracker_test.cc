@@ -45,8 +45,10 @@ double largest_error_m(const TyreModel& tyre, double step_s, double speed_mps, d
   for (auto i = -20 * period; i < std::lround((duration_s + 6.0) / step_s); ++i) {
     const double time_s = static_cast<double>(i) * step_s;
     if (i % period == 0) {
+      const double ahead_s = time_s + tracker.preview_s();
       const PathPoint point{change.d_m(time_s), std::atan2(change.speed_mps(time_s), speed_mps),
-                            change.acceleration_mps2(time_s) / (speed_mps * speed_mps)};
+                            change.acceleration_mps2(time_s) / (speed_mps * speed_mps),
+                            change.acceleration_mps2(ahead_s) / (speed_mps * speed_mps)};
       car.set_steering_angle(tracker.steering_rad(car.state(), point));
     }
     car.step();
@@ -80,9 +82,9 @@ TEST(PathTracker, KeepsAFourSecondsLaneChangeWithinTenCentimetresAtEverySpeed) {
 
 TEST(PathTracker, SteersStraightOnAStraightPathThatItIsOn) {
   const PathTracker tracker(bmw_x5(), slip_tyre(0.9), kPeriod_s);
-  EXPECT_EQ(tracker.steering_rad({.y_m = 1.6, .speed_mps = 10.0}, {1.6, 0.0, 0.0}), 0.0);
-  EXPECT_GT(tracker.steering_rad({.y_m = 1.0, .speed_mps = 10.0}, {1.6, 0.0, 0.0}), 0.0);
-  EXPECT_LT(tracker.steering_rad({.y_m = 2.0, .speed_mps = 10.0}, {1.6, 0.0, 0.0}), 0.0);
+  EXPECT_EQ(tracker.steering_rad({.y_m = 1.6, .speed_mps = 10.0}, {1.6}), 0.0);
+  EXPECT_GT(tracker.steering_rad({.y_m = 1.0, .speed_mps = 10.0}, {1.6}), 0.0);
+  EXPECT_LT(tracker.steering_rad({.y_m = 2.0, .speed_mps = 10.0}, {1.6}), 0.0);
 }
 
 }  // namespace

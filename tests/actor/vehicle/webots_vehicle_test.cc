@@ -74,7 +74,7 @@ TEST(WebotsVehicle, IsKeptOnItsPathByTheTracker) {
   const PathTracker tracker(bmw_x5(), kWebotsTyre, 0.05);
   car.place({.speed_mps = 13.9});
   for (int i = 0; i < 200; ++i) {
-    car.set_steering_angle(tracker.steering_rad(car.state(), {1.0, 0.0, 0.0}));
+    car.set_steering_angle(tracker.steering_rad(car.state(), {.y_m = 1.0}));
     drive(car, 0.05);
   }
   EXPECT_NEAR(car.state().y_m, 1.0, 0.01);

@@ -99,6 +99,25 @@ TEST(EgoMotion, ACarWithDynamicsKeepsToTheLaneChangesThatPlannersAskFor) {
   }
 }
 
+TEST(EgoMotion, ACarSwingsOutLittleAtAnySpeed) {
+  for (const DynamicsSettings& world : dynamic_worlds()) {
+    for (const double speed_mps : {2.0, 4.0, 6.0, 9.0, 13.0}) {
+      Drive drive(config_of(world), cruising(speed_mps));
+      // To the next corridor, 0.64 m away, in a second, or in longer where it is slow.
+      drive.to({kMiddleCorridor + 1, speed_mps}, 5 + static_cast<int>(50 / speed_mps));
+      double furthest_m = 0.0, yaw_rad = 0.0;
+      for (const Ego& ego : drive.egos) {
+        furthest_m = std::max(furthest_m, ego.d_m);
+        yaw_rad = std::max(yaw_rad, std::abs(ego.yaw_rad));
+      }
+      EXPECT_LT(furthest_m, kLaneMiddle_m + 0.64 + 0.16) << world.world << " " << speed_mps;
+      EXPECT_LT(yaw_rad, 0.12) << world.world << " " << speed_mps;
+      drive.to({kMiddleCorridor + 1, speed_mps}, static_cast<int>(100 / speed_mps));
+      EXPECT_NEAR(drive.egos.back().d_m, kLaneMiddle_m + 0.64, 0.05) << speed_mps;
+    }
+  }
+}
+
 TEST(EgoMotion, ACarWithDynamicsBrakesToAStandAndStartsAgain) {
   for (const DynamicsSettings& world : dynamic_worlds()) {
     Drive drive(config_of(world), cruising(13.0));
