@@ -115,6 +115,16 @@ RunDirectory world_directory(const RunDirectory& run, const EvaluationWorld& wor
   config.bp_reward = scenario.bp_reward;
   config.evaluation = scenario.evaluation;
   const std::string name = world.name(world.scenario.empty() ? scenario_name(run) : "");
+  // What a setting would change now is the trained planners' own.
+  const std::vector<ChangedKey> ignored =
+      changed_keys(config, parse_run_config(to_toml(config), name, world.settings));
+  if (!ignored.empty()) {
+    throw Failure(
+        "{} belongs to the training, as which its planners drive everywhere: train a run with it "
+        "(an evaluation may set [road], [traffic], [simulation], [ego], [dynamics], [bp_reward], "
+        "[evaluation] and planner.corridor_change_s)",
+        ignored.front().name);
+  }
   if (config.road.lanes != trained.road.lanes) {
     throw Failure("{} has {} lanes, and the networks of {} were trained on {}", name,
                   config.road.lanes, run.root().string(), trained.road.lanes);

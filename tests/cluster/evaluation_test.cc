@@ -87,6 +87,17 @@ TEST_F(Evaluation, AScenarioThatTheNetworksDoNotFitIsRefused) {
               ThrowsMessage<Failure>(HasSubstr("has 4 lanes")));
 }
 
+TEST_F(Evaluation, ASettingThatIsTheTrainedPlannersOwnIsRefused) {
+  const std::filesystem::path scenario = temporary_.path() / "dense.toml";
+  write_file(scenario, "[traffic]\nvehicles_max = 17\n");
+  EXPECT_THAT(
+      [&] {
+        world_directory(directory_, {scenario, {"planner.side_clearance_m=0.3"}});
+      },
+      ThrowsMessage<Failure>(HasSubstr("planner.side_clearance_m belongs to the training")));
+  EXPECT_NO_THROW(world_directory(directory_, {scenario, {"planner.corridor_change_s=2"}}));
+}
+
 TEST_F(Evaluation, WrongOptionsAreRefusedBeforeAnythingIsDriven) {
   EXPECT_THAT(failure_of({.planners = {"human"}}), HasSubstr("no planner 'human'"));
   EXPECT_THAT(failure_of({.planners = {"rules", "rules"}}), HasSubstr("rules is given twice"));
