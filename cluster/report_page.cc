@@ -184,8 +184,7 @@ std::string report_page(const std::vector<RunGroup>& groups,
   for (const DrawnFigure& drawn : episodes) body += html_figure(drawn.svg, drawn.caption);
 
   body += html_heading(2, "Repeating it");
-  body += html_paragraph(
-      "With the versions below, on the same type of processor, each command gives the same bits.");
+  body += html_paragraph("With the versions below each command gives the same bits.");
   for (const RunGroup& group : groups) {
     for (const RunRecord& run : group.runs) body += html_preformatted(repeating_commands(run));
   }

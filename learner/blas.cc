@@ -2,7 +2,9 @@
 
 #include <dlfcn.h>
 #include <torch/version.h>
+#include <unistd.h>
 
+#include <cstdlib>
 #include <filesystem>
 #include <system_error>
 
@@ -17,7 +19,20 @@ std::string call(const char* name) {
   return text == nullptr ? std::string() : std::string(text);
 }
 
+constexpr const char* kCoreVariable = "OPENBLAS_CORETYPE";
+constexpr const char* kPortableCore = "Haswell";
+
 }  // namespace
+
+void use_portable_kernels(char** argv) {
+  if (std::getenv(kCoreVariable) != nullptr) return;
+  if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("fma")) return;
+  std::error_code error;
+  const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", error);
+  if (error) return;
+  setenv(kCoreVariable, kPortableCore, 1);
+  execv(program.c_str(), argv);  // returns on failure: then on with the kernels at hand
+}
 
 Blas blas_in_use() {
   Blas blas;

@@ -6,6 +6,12 @@
 
 namespace corridor::learner {
 
+// OpenBLAS takes the kernels that suit the processor, and different kernels round differently. This
+// starts the program anew with Haswell's, which every x86-64 processor with AVX2 and FMA has, so
+// that equal seeds give equal bits on all of them; unless OPENBLAS_CORETYPE is set, or the
+// processor has none. Call it first of all in main.
+void use_portable_kernels(char** argv);
+
 struct Blas {
   std::string library;  // resolved path of the file that sgemm comes from
   std::string core;     // OpenBLAS's kernel ("SkylakeX"), empty for others

@@ -70,6 +70,7 @@ int run(const std::string& root) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  learner::use_portable_kernels(argv);
   CLI::App app("The learner of a corridor run; `corridor` starts it.");
   std::string root;
   app.add_option("RUN_DIRECTORY", root, "the run, as `corridor train` made it")->required();

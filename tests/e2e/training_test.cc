@@ -83,6 +83,17 @@ TEST(Training, TrainsBothPlannersEvaluatesThemAndDrivesTheirEpisodesAgain) {
   EXPECT_EQ(again.status, 0) << again.output;
 }
 
+// With Debian 12's libraries, on every x86-64 processor with AVX2 (learner/blas.h). Who changes what
+// a training computes changes this, and nobody else.
+TEST(Training, GivesTheSameBitsOnEveryMachine) {
+  TemporaryDirectory temporary;
+  const auto run = temporary.path() / "run";
+  const CommandResult result = run_command(train_command(run), kDeadline_s);
+  ASSERT_EQ(result.status, 0) << result.output;
+  EXPECT_EQ(json::parse(std::ifstream(run / "learner.json")).at("blas_core"), "Haswell");
+  EXPECT_EQ(fingerprint(run), "caf0e003bbc79f39\n");
+}
+
 TEST(Training, TwiceTheSameSeedGivesTheSameBitsAlsoWhenProcessesAreSlowedAtRandom) {
   TemporaryDirectory temporary;
   const auto first = temporary.path() / "first";
