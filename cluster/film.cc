@@ -69,6 +69,7 @@ class Canvas {
     cairo_stroke(cairo_);
   }
   void line(const std::vector<std::array<double, 2>>& points, double width, double dash = 0.0) {
+    cairo_new_path(cairo_);  // texts leave a point behind
     cairo_set_line_width(cairo_, width);
     cairo_set_dash(cairo_, &dash, dash > 0.0 ? 1 : 0, 0.0);
     for (const auto& [x, y] : points) cairo_line_to(cairo_, x, y);
@@ -305,9 +306,10 @@ class Plot {
   void frame(const std::string& title, const std::string& scale) {
     canvas_.colour(kInk);
     canvas_.text(left_, top_ - 6, 13, title);
-    canvas_.text(left_ + kWidth, top_ - 6, 11, scale, 1.0);
     canvas_.colour(kAsphalt);
     canvas_.rectangle(left_, top_, kWidth, kHeight);
+    canvas_.colour(kFaint);
+    canvas_.text(left_ + kWidth - 4, top_ + 12, 11, scale, 1.0);
   }
 
   void curve(const History::Values& values, double until_s, const Colour& colour) {
@@ -355,18 +357,18 @@ void draw_history(Canvas& canvas, const Clip& clip, const History& history, doub
                          step.decision->mop_reward);
   }
   Plot speeds(canvas, left, top + 20, limit_mps, duration_s);
-  speeds.frame(speed, fmt::format("0 to {:.0f} km/h", kKphPerMps * limit_mps));
+  speeds.frame(speed, fmt::format("{:.0f} km/h", kKphPerMps * limit_mps));
   speeds.curve(history.leader_mps, time_s, kOther);
   speeds.curve(history.speed_mps, time_s, kEgo);
 
   Plot gap(canvas, left, top + 20 + Plot::kEvery, kGapMax_m, duration_s);
   gap.frame(
       leader.speed_mps ? fmt::format("gap to the leader {:.0f} m", leader.gap_m) : "nobody ahead",
-      fmt::format("0 to {:g} m", kGapMax_m));
+      fmt::format("{:g} m", kGapMax_m));
   gap.curve(history.gap_m, time_s, kEgo);
 
   Plot across(canvas, left, top + 20 + 2 * Plot::kEvery, road_m, duration_s);
-  across.frame("place across the road", fmt::format("0 to {:g} m", road_m));
+  across.frame("place across the road", fmt::format("{:g} m", road_m));
   across.curve(history.d_m, time_s, kEgo);
   for (int lane = 1; lane < clip.trace.lanes; ++lane) across.level(lane * clip.trace.lane_width_m);
 }
