@@ -238,12 +238,12 @@ class OdeVehicle::Simulation {
     const dReal* velocity = dBodyGetLinearVel(wheel.body);
     const dReal* turning = dBodyGetAngularVel(wheel.body);
     const double ahead_x = contact.fdir1[0], ahead_y = contact.fdir1[1];
-    const double down_m = dBodyGetPosition(wheel.body)[2];
+    const double hub_m = dBodyGetPosition(wheel.body)[2];  // above the contact
     const double rolling_mps =
         std::max(std::abs(ahead_x * velocity[0] + ahead_y * velocity[1]), kSlipSpeedMin_mps);
     // Of the contact point, to the left.
-    const double sliding_mps = -ahead_y * (velocity[0] - down_m * turning[1]) +
-                               ahead_x * (velocity[1] + down_m * turning[0]);
+    const double sliding_mps = -ahead_y * (velocity[0] - hub_m * turning[1]) +
+                               ahead_x * (velocity[1] + hub_m * turning[0]);
     const double load_n = std::max(wheel.forces.f1[2], kLoadMin_n);
     const LateralForce force = lateral_force(tyre_, sliding_mps / rolling_mps);
     const double slope = std::max(force.per_rad, kSlopeMin * tyre_.stiffness);

@@ -42,7 +42,7 @@ class DynamicMotion : public EgoMotion {
   EgoSettings size_;
   std::uint64_t seed_ = 0;
   std::uint64_t instant_ = 0;        // of the controller's
-  double across_s_ = 0.0;            // how far along the present trajectory's way across the road
+  double across_s_ = 0.0;            // of the present trajectory: where its way across has got to
   std::size_t delayed_;              // periods between a decision and its effect
   std::vector<Controls> under_way_;  // decided, not yet in effect; the oldest first
 };
