@@ -184,7 +184,9 @@ std::string report_page(const std::vector<RunGroup>& groups,
   for (const DrawnFigure& drawn : episodes) body += html_figure(drawn.svg, drawn.caption);
 
   body += html_heading(2, "Repeating it");
-  body += html_paragraph("With the versions below each command gives the same bits.");
+  body += html_paragraph(
+      "With the versions below each command gives the same bits, on any x86-64 processor with "
+      "AVX2.");
   for (const RunGroup& group : groups) {
     for (const RunRecord& run : group.runs) body += html_preformatted(repeating_commands(run));
   }

@@ -2,13 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "proto/failure.h"
 
 namespace corridor::vehicle {
 namespace {
 
-constexpr double kMps_per_kph = 1.0 / 3.6;
+constexpr double kKphPerMps = 3.6;
 // A run-up ends when the speed is so near, and has failed after so long.
 constexpr double kSpeedTolerance_mps = 0.02;
 constexpr double kRunUpMax_s = 60.0;
@@ -53,7 +54,7 @@ void WebotsVehicle::place(const VehicleState& start) {
 void WebotsVehicle::set_steering_angle(double angle_rad) { car_.setSteeringAngle(-angle_rad); }
 
 void WebotsVehicle::set_cruising_speed(double speed_mps) {
-  car_.setCruisingSpeed(speed_mps / kMps_per_kph);
+  car_.setCruisingSpeed(speed_mps * kKphPerMps);
 }
 
 void WebotsVehicle::set_brake_intensity(double share) {
@@ -80,7 +81,7 @@ VehicleState WebotsVehicle::state() const {
   VehicleState state;
   state.x_m = plane_to_.x_m + turn_cos * away_x_m - turn_sin * away_y_m;
   state.y_m = plane_to_.y_m + turn_sin * away_x_m + turn_cos * away_y_m;
-  state.yaw_rad = std::remainder(now_.yaw_rad + turn_rad, 2 * std::acos(-1.0));
+  state.yaw_rad = std::remainder(now_.yaw_rad + turn_rad, 2 * std::numbers::pi);
   state.speed_mps = (cos * moved_x_m + sin * moved_y_m) / time_step_s();
   state.lateral_speed_mps = (-sin * moved_x_m + cos * moved_y_m) / time_step_s();
   state.yaw_rate_radps = car_.getSelf()->getVelocity()[5];

@@ -1,7 +1,7 @@
 // A car of a running Webots (R2022a and later: x ahead, y left, z up), driven by its public
 // automobile API. It needs Webots' headers and libraries, and a process that Webots has for the
 // car's controller, with supervisor rights, on a level ground. Tests compile it against a fake of
-// those headers (tests/actor/vehicle/webots); it has not been run in Webots.
+// those headers (tests/actor/vehicle/webots_fake); it has not been run in Webots.
 #pragma once
 
 #include <array>

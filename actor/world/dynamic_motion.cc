@@ -19,9 +19,7 @@ constexpr double kSpeedGain_per_s = 4.0;
 // Trajectories move over in equal times at all speeds. Below this one a car goes across as much
 // more slowly as it is slower: along the same curve, on which its corners swing out by 0.13 m.
 constexpr double kFreeSpeed_mps = 10.0;
-double pace_across(const driving::Trajectory& trajectory, double time_s) {
-  return std::min(1.0, trajectory.at(time_s).speed_mps / kFreeSpeed_mps);
-}
+double pace_across(double speed_mps) { return std::min(1.0, speed_mps / kFreeSpeed_mps); }
 
 double brakes_mps2(const CarModel& car) {
   return 4 * car.brake_nm / car.tyre_radius_m / car.mass_kg();
@@ -82,7 +80,7 @@ Motion DynamicMotion::drive(const driving::Trajectory& trajectory, double from_s
     car_->set_cruising_speed(now.speed_mps);
     car_->set_brake_intensity(now.brake);
     for (long step = 0; step < steps; ++step) car_->step();
-    across_s_ += pace_across(trajectory, time_s) * kControlPeriod_s;
+    across_s_ += pace_across(trajectory.at(time_s).speed_mps) * kControlPeriod_s;
   }
 
   Motion motion;
@@ -105,7 +103,7 @@ DynamicMotion::Controls DynamicMotion::decide(const driving::Trajectory& traject
                                               const VehicleState& measured) const {
   const driving::TrajectoryPoint now = trajectory.at(time_s);
   const driving::TrajectoryPoint soon = trajectory.at(time_s + kControlPeriod_s);
-  const double pace = pace_across(trajectory, time_s);
+  const double pace = pace_across(now.speed_mps);
   const driving::TrajectoryPoint here = across(trajectory, 0.0, pace);
   const driving::TrajectoryPoint ahead = across(trajectory, tracker_.preview_s(), pace);
   const double speed_mps = std::max(now.speed_mps, 1.0);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "actor/vehicle/ode_vehicle.h"
+#include "tests/actor/vehicle/drive.h"
 
 namespace corridor::vehicle {
 namespace {
@@ -69,8 +70,7 @@ double peak_ratio(const std::string& name, double speed_mps) {
   OdeVehicle car(bmw_320i(), slip_tyre(kFriction), kStep_s);
   car.place({.speed_mps = speed_mps});
   const auto steps = std::lround(kTraceStep_s / kStep_s);
-  constexpr int kSettling = 500;  // of the suspension
-  for (int i = 0; i < kSettling; ++i) car.step();
+  drive(car, 1.0);  // the suspension settles
   double peak = 0.0, expected = 0.0;
   for (std::size_t row = 0; row + 1 < trace.steering_rad.size(); ++row) {
     if (row >= trace.steering_rad.size() / 2) {

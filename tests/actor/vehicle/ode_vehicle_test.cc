@@ -6,6 +6,7 @@
 #include <numbers>
 #include <string>
 
+#include "tests/actor/vehicle/drive.h"
 #include "tests/actor/vehicle/single_track.h"
 
 namespace corridor::vehicle {
@@ -22,10 +23,6 @@ const Kind kWebots{"webots", kWebotsTyre, 0.01};
 const Kind kDry{"dry", slip_tyre(0.9), 0.002};
 const Kind kWet{"wet", slip_tyre(0.5), 0.002};
 const Kind kSnow{"snow", slip_tyre(0.3), 0.002};
-
-void drive(Vehicle& car, double time_s) {
-  for (int i = 0; i < std::lround(time_s / car.time_step_s()); ++i) car.step();
-}
 
 class OdeVehicleOf : public testing::TestWithParam<Kind> {
  protected:

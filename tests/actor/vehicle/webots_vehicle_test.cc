@@ -2,19 +2,14 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "actor/vehicle/path_tracker.h"
 #include "proto/failure.h"
+#include "tests/actor/vehicle/drive.h"
 
 namespace corridor::vehicle {
 namespace {
 
 const VehicleState kStart{.x_m = 50.0, .y_m = 4.8, .yaw_rad = 0.01, .speed_mps = 13.9};
-
-void drive(Vehicle& car, double time_s) {
-  for (int i = 0; i < std::lround(time_s / car.time_step_s()); ++i) car.step();
-}
 
 void expect_near(const VehicleState& a, const VehicleState& b, double within) {
   EXPECT_NEAR(a.x_m, b.x_m, within);
