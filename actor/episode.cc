@@ -5,8 +5,8 @@
 #include "actor/driving/bypass.h"
 #include "actor/driving/reward.h"
 #include "actor/driving/trajectory.h"
-#include "proto/failure.h"
-#include "proto/random.h"
+#include "proto/base/failure.h"
+#include "proto/base/random.h"
 
 namespace corridor::actor {
 

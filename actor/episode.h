@@ -9,8 +9,8 @@
 
 #include "actor/driving/planner.h"
 #include "actor/world/world.h"
-#include "proto/hash.h"
-#include "proto/settings.h"
+#include "proto/base/hash.h"
+#include "proto/settings/settings.h"
 
 namespace corridor::actor {
 

@@ -1,28 +1,26 @@
 #include "actor/evaluation.h"
 
-#include <nlohmann/json.hpp>
-
 #include "actor/recorded_episode.h"
-#include "proto/failure.h"
+#include "proto/base/failure.h"
+#include "proto/base/json.h"
+#include "proto/system/files.h"
 
 namespace corridor::actor {
 namespace {
-
-using nlohmann::json;
 
 constexpr double kKphPerMps = 3.6;
 
 std::string hex(std::uint64_t hash) { return fmt::format("{:016x}", hash); }
 
-json summary_json(const EpisodeSummary& summary, std::uint64_t episode) {
+Json summary_json(const EpisodeSummary& summary, std::uint64_t episode) {
   return {{"episode", episode},
           {"steps", summary.steps},
           {"bp_reward", summary.bp_reward},
           {"mop_reward", summary.mop_reward},
           {"collisions", summary.collision ? 1 : 0},
           {"collision_kind", summary.collision
-                                 ? json(driving::collision_kind_name(summary.collision->kind))
-                                 : json(nullptr)},
+                                 ? Json(driving::collision_kind_name(summary.collision->kind))
+                                 : Json(nullptr)},
           {"lane_changes", summary.lane_changes},
           {"hard_brakes", summary.hard_brakes},
           {"bypasses", summary.bypasses},
@@ -30,23 +28,23 @@ json summary_json(const EpisodeSummary& summary, std::uint64_t episode) {
           {"lane_steps", summary.lane_steps}};
 }
 
-json totals_json(const RunConfig& config, const EvaluationTask& task, const json& per_episode) {
+Json totals_json(const RunConfig& config, const EvaluationTask& task, const Json& per_episode) {
   std::int64_t steps = 0, collisions = 0, lane_changes = 0, bypasses = 0;
   double bp_reward = 0.0, distance_m = 0.0;
-  json by_kind = json::object();
+  Json by_kind = Json::object();
   for (int kind = 0; kind < driving::kCollisionKinds; ++kind) {
     by_kind[driving::collision_kind_name(static_cast<driving::CollisionKind>(kind))] = 0;
   }
-  for (const json& episode : per_episode) {
+  for (const Json& episode : per_episode) {
     steps += episode["steps"].get<std::int64_t>();
     collisions += episode["collisions"].get<std::int64_t>();
     lane_changes += episode["lane_changes"].get<std::int64_t>();
     bypasses += episode["bypasses"].get<std::int64_t>();
     bp_reward += episode["bp_reward"].get<double>();
     distance_m += episode["distance_m"].get<double>();
-    const json& kind = episode["collision_kind"];
+    const Json& kind = episode["collision_kind"];
     if (!kind.is_null()) {
-      json& count = by_kind[kind.get<std::string>()];
+      Json& count = by_kind[kind.get<std::string>()];
       count = count.get<int>() + 1;
     }
   }
@@ -65,7 +63,7 @@ json totals_json(const RunConfig& config, const EvaluationTask& task, const json
           {"per_episode", per_episode}};
 }
 
-json episode_json(const EvaluationTask& task, std::uint64_t index, std::uint64_t seed,
+Json episode_json(const EvaluationTask& task, std::uint64_t index, std::uint64_t seed,
                   const Episode& episode) {
   return {{"planner", task.pair.name},
           {"evaluation_seed", task.seed},
@@ -89,7 +87,7 @@ void evaluate(const RunConfig& config, const Networks& networks, const Evaluatio
   if (!task.fcd_directory.empty()) std::filesystem::create_directories(task.fcd_directory);
 
   Episode episode(config, world);
-  json per_episode = json::array();
+  Json per_episode = Json::array();
   std::int64_t steps = 0;
   for (std::uint64_t index = 0; steps < task.steps; ++index) {
     world::EpisodeStart start{.seed = test_episode_seed(task.seed, index)};

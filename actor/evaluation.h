@@ -8,8 +8,8 @@
 #include "actor/episode.h"
 #include "actor/planners.h"
 #include "actor/world/world.h"
-#include "proto/run_directory.h"
-#include "proto/settings.h"
+#include "proto/run/run_directory.h"
+#include "proto/settings/settings.h"
 
 namespace corridor::actor {
 

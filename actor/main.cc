@@ -1,23 +1,23 @@
 // corridor-actor: one car in one SUMO. In a training run it explores; by itself it evaluates,
 // drives a recorded episode again, for its figures too, or looks back on an evaluation's
 // collisions.
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <optional>
 #include <string>
 
 #include "actor/episode.h"
-#include "actor/episode_trace.h"
 #include "actor/evaluation.h"
-#include "actor/hindsight_report.h"
-#include "actor/training.h"
+#include "actor/look_back.h"
+#include "actor/rounds.h"
+#include "actor/tracer.h"
 #include "actor/world/sumo_world.h"
-#include "proto/failure.h"
-#include "proto/networks.h"
-#include "proto/program.h"
-#include "proto/run_config.h"
-#include "proto/run_directory.h"
-#include "proto/time_account.h"
+#include "proto/base/failure.h"
+#include "proto/config/run_config.h"
+#include "proto/run/networks.h"
+#include "proto/run/run_directory.h"
+#include "proto/system/command_line.h"
+#include "proto/system/program.h"
+#include "proto/system/time_account.h"
 
 namespace {
 
@@ -133,7 +133,6 @@ int run(const Arguments& arguments) {
 int main(int argc, char** argv) {
   Arguments arguments;
   CLI::App app("One car in one SUMO: an actor of a training run, or an evaluation by itself");
-  app.set_version_flag("--version", std::string("corridor-actor ") + kVersion);
   app.add_option("RUN", arguments.run, "run directory")->required();
   app.add_option("--index", arguments.index, "train: as which actor, from 0");
   app.add_option("--evaluate", arguments.planners, "evaluate this planner pair");
@@ -156,6 +155,8 @@ int main(int argc, char** argv) {
   app.add_option("--attempts", arguments.hindsight.attempts_max,
                  "look back: give up after so many attempts for each number of actions")
       ->check(CLI::PositiveNumber);
-  CLI11_PARSE(app, argc, argv);
-  return run_program("corridor-actor", [&] { return run(arguments); });
+  return run_program("corridor-actor", [&] {
+    const auto done = parse_command_line(app, "corridor-actor", argc, argv);
+    return done ? *done : run(arguments);
+  });
 }

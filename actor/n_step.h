@@ -1,4 +1,4 @@
-// Steps of an episode -> n-step transitions as rows (proto/transition.h).
+// Steps of an episode -> n-step transitions as rows (proto/settings/transition.h).
 #pragma once
 
 #include <deque>
@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "proto/settings.h"
-#include "proto/transition.h"
+#include "proto/settings/settings.h"
+#include "proto/settings/transition.h"
 
 namespace corridor::actor {
 

@@ -8,9 +8,9 @@
 
 #include "actor/driving/planner.h"
 #include "actor/policy/action_values.h"
-#include "proto/networks.h"
-#include "proto/planner_pairs.h"
-#include "proto/settings.h"
+#include "proto/run/networks.h"
+#include "proto/settings/planner_pairs.h"
+#include "proto/settings/settings.h"
 
 namespace corridor::actor {
 

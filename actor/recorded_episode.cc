@@ -1,15 +1,14 @@
 #include "actor/recorded_episode.h"
 
-#include <nlohmann/json.hpp>
-
-#include "proto/failure.h"
-#include "proto/json_numbers.h"
-#include "proto/run_directory.h"
+#include "proto/base/failure.h"
+#include "proto/base/json.h"
+#include "proto/run/run_directory.h"
+#include "proto/system/files.h"
 
 namespace corridor::actor {
 
 RecordedEpisode read_recorded_episode(const RunConfig& config, const std::filesystem::path& file) {
-  const nlohmann::json record = read_json(file);
+  const Json record = read_json(file);
   RecordedEpisode recorded;
   recorded.file = file;
   try {

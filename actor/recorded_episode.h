@@ -9,7 +9,7 @@
 
 #include "actor/episode.h"
 #include "actor/world/world.h"
-#include "proto/settings.h"
+#include "proto/settings/settings.h"
 
 namespace corridor::actor {
 

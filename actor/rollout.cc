@@ -4,7 +4,7 @@
 #include "actor/driving/reward.h"
 #include "actor/planners.h"
 #include "actor/world/traffic_distribution.h"
-#include "proto/failure.h"
+#include "proto/base/failure.h"
 
 namespace corridor::actor {
 

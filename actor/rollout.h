@@ -11,9 +11,9 @@
 #include "actor/n_step.h"
 #include "actor/policy/action_values.h"
 #include "actor/policy/exploration.h"
-#include "proto/messages.h"
-#include "proto/schedule.h"
-#include "proto/time_account.h"
+#include "proto/settings/schedule.h"
+#include "proto/system/time_account.h"
+#include "proto/wire/messages.h"
 
 namespace corridor::actor {
 

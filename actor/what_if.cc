@@ -16,7 +16,7 @@
 #include <string_view>
 #include <utility>
 
-#include "proto/failure.h"
+#include "proto/base/failure.h"
 
 namespace corridor::actor {
 namespace {

@@ -4,10 +4,10 @@
 #include <cstdlib>
 #include <cstring>
 
-#include "cluster/text.h"
-#include "proto/failure.h"
-#include "proto/run_config.h"
-#include "proto/schedule.h"
+#include "proto/base/failure.h"
+#include "proto/base/text.h"
+#include "proto/config/run_config.h"
+#include "proto/settings/schedule.h"
 #include "scenarios/sumo_files.h"
 
 namespace corridor::cluster {

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-#include "proto/settings.h"
+#include "proto/settings/settings.h"
 
 namespace corridor::cluster {
 

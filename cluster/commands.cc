@@ -1,21 +1,23 @@
 #include "cluster/commands.h"
 
-#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <iterator>
 
 #include "cluster/check.h"
-#include "cluster/checkpoint.h"
 #include "cluster/drive.h"
-#include "cluster/evaluation.h"
+#include "cluster/evaluate.h"
 #include "cluster/experiment.h"
 #include "cluster/export.h"
 #include "cluster/hindsight.h"
-#include "cluster/plan.h"
-#include "cluster/report.h"
-#include "cluster/training.h"
-#include "proto/failure.h"
-#include "proto/planner_pairs.h"
-#include "proto/program.h"
-#include "proto/worlds.h"
+#include "cluster/launch/plan.h"
+#include "cluster/report/report.h"
+#include "cluster/train.h"
+#include "proto/base/failure.h"
+#include "proto/run/fingerprint.h"
+#include "proto/settings/planner_pairs.h"
+#include "proto/settings/worlds.h"
+#include "proto/system/command_line.h"
+#include "proto/system/program.h"
 
 namespace corridor::cluster {
 namespace {
@@ -246,7 +248,6 @@ const Command kCommands[] = {
 int run_command(int argc, const char* const* argv) {
   CLI::App app("Trains and evaluates hierarchical planners for multi-lane cruising in SUMO traffic",
                "corridor");
-  app.set_version_flag("--version", kVersion, "print the version");
   app.require_subcommand(1);
   app.footer("`corridor COMMAND --help` tells more, with examples.");
   Arguments arguments;
@@ -257,16 +258,11 @@ int run_command(int argc, const char* const* argv) {
     declared->footer(fmt::format("Examples:\n  {}", command.examples));
     command.declare(*declared, arguments);
   }
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
-    throw Failure("{}; see {} --help", error.what(), arguments.program);
-  }
-  for (const Command& command : kCommands) {
-    if (app.got_subcommand(command.name)) return command.run(arguments);
-  }
-  CORRIDOR_CHECK(false, "a command is required and none was parsed");
+  if (const auto done = parse_command_line(app, arguments.program, argc, argv)) return *done;
+  const auto given = std::ranges::find_if(
+      kCommands, [&](const Command& command) { return app.got_subcommand(command.name); });
+  CORRIDOR_CHECK(given != std::end(kCommands), "a command is required and none was parsed");
+  return given->run(arguments);
 }
 
 }  // namespace corridor::cluster

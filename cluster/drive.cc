@@ -1,19 +1,19 @@
 #include "cluster/drive.h"
 
-#include <spdlog/fmt/fmt.h>
-
 #include <chrono>
 #include <cmath>
 #include <cstdio>
 
-#include "cluster/clip.h"
-#include "cluster/evaluation_result.h"
-#include "cluster/film.h"
-#include "cluster/player.h"
-#include "cluster/traced_episode.h"
-#include "proto/failure.h"
-#include "proto/run_config.h"
-#include "proto/run_directory.h"
+#include "cluster/launch/traced_episode.h"
+#include "cluster/pictures/clip.h"
+#include "cluster/pictures/film.h"
+#include "cluster/pictures/player.h"
+#include "cluster/results/evaluation_result.h"
+#include "proto/base/failure.h"
+#include "proto/base/format.h"
+#include "proto/config/run_config.h"
+#include "proto/run/run_directory.h"
+#include "proto/system/files.h"
 
 namespace corridor::cluster {
 namespace {

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "cluster/evaluation.h"
+#include "cluster/evaluate.h"
 
 namespace corridor::cluster {
 

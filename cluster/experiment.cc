@@ -1,25 +1,28 @@
 #include "cluster/experiment.h"
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 #include <vector>
 
-#include "cluster/checkpoint.h"
-#include "cluster/evaluation.h"
-#include "cluster/evaluation_result.h"
+#include "cluster/evaluate.h"
 #include "cluster/experiment_file.h"
-#include "cluster/local.h"
-#include "cluster/manifest.h"
-#include "cluster/plan.h"
-#include "cluster/results_tables.h"
-#include "cluster/step_progress.h"
-#include "cluster/text.h"
-#include "cluster/training.h"
-#include "proto/failure.h"
-#include "proto/planner_pairs.h"
-#include "proto/run_config.h"
-#include "proto/run_directory.h"
-#include "proto/schedule.h"
+#include "cluster/launch/local.h"
+#include "cluster/launch/manifest.h"
+#include "cluster/launch/plan.h"
+#include "cluster/results/evaluation_result.h"
+#include "cluster/results/results_tables.h"
+#include "cluster/train.h"
+#include "cluster/watch/line_tail.h"
+#include "cluster/watch/step_progress.h"
+#include "proto/base/failure.h"
+#include "proto/base/json.h"
+#include "proto/base/text.h"
+#include "proto/config/run_config.h"
+#include "proto/run/fingerprint.h"
+#include "proto/run/metrics.h"
+#include "proto/run/run_directory.h"
+#include "proto/settings/planner_pairs.h"
+#include "proto/settings/schedule.h"
+#include "proto/system/files.h"
 
 namespace corridor::cluster {
 namespace {
@@ -218,7 +221,7 @@ void write_results(const Experiment& experiment, const std::vector<Run>& runs,
   std::string text =
       fmt::format("# {}\n\n{} steps for each arm, training seed and evaluation seed.\n",
                   options.file.filename().string(), grouped(experiment.evaluation_steps));
-  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  OrderedJson json = OrderedJson::array();
   for (const TrainingArm& training : experiment.trainings) {
     for (const EvaluationWorld& evaluated : training.evaluate_in) {
       const std::string world = evaluated.name("");
@@ -229,7 +232,7 @@ void write_results(const Experiment& experiment, const std::vector<Run>& runs,
       for (const Table& table : tables) text += fmt::format("\n{}", markdown_of(table));
       fmt::print("\n{}\n{}", title, text_of(tables.front()));
       for (const SeedResult& result : results) {
-        nlohmann::ordered_json entry = {
+        OrderedJson entry = {
             {"training", training.name}, {"training_seed", result.training_seed}, {"world", world}};
         entry.update(evaluation_json({result.result}).front());
         json.push_back(std::move(entry));

@@ -1,26 +1,23 @@
 #include "cluster/experiment_file.h"
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
 #include <sstream>
 
-#include "cluster/text.h"
-#include "proto/failure.h"
-#include "proto/json_numbers.h"
-#include "proto/planner_pairs.h"
-#include "proto/run_config.h"
+#include "proto/base/failure.h"
+#include "proto/base/json.h"
+#include "proto/base/text.h"
+#include "proto/config/run_config.h"
+#include "proto/settings/planner_pairs.h"
 
 namespace corridor::cluster {
 namespace {
 
-using nlohmann::json;
-
 // One table of the file; every key that is asked for is known.
 class Table {
  public:
-  Table(const json& table, std::string place) : table_(table), place_(std::move(place)) {}
+  Table(const Json& table, std::string place) : table_(table), place_(std::move(place)) {}
 
   template <typename T>
   T required(const char* key) {
@@ -51,23 +48,23 @@ class Table {
   const std::string& place() const { return place_; }
 
  private:
-  static void read(const json& value, std::string& into) {
+  static void read(const Json& value, std::string& into) {
     if (!value.is_string() || value.get<std::string>().empty()) {
       throw Failure("must be a text in quotes");
     }
     into = value.get<std::string>();
   }
-  static void read(const json& value, std::int64_t& into) {
+  static void read(const Json& value, std::int64_t& into) {
     into = whole_number<std::int64_t>(value);
     if (into < 1) throw Failure("must be at least 1");
   }
-  static void read(const json& value, std::uint64_t& into) {
+  static void read(const Json& value, std::uint64_t& into) {
     into = whole_number<std::uint64_t>(value);
   }
   template <typename T>
-  static void read(const json& list, std::vector<T>& into) {
+  static void read(const Json& list, std::vector<T>& into) {
     if (!list.is_array() || list.empty()) throw Failure("must be a list with something in it");
-    for (const json& value : list) {
+    for (const Json& value : list) {
       T element;
       read(value, element);
       if (std::ranges::find(into, element) != into.end()) throw Failure("names one thing twice");
@@ -75,7 +72,7 @@ class Table {
     }
   }
 
-  const json& table_;
+  const Json& table_;
   std::string place_;
   std::set<std::string> known_;
 };
@@ -157,7 +154,7 @@ void check_from(const TrainingArm& arm, const std::vector<TrainingArm>& training
 }  // namespace
 
 Experiment load_experiment(const std::filesystem::path& file) {
-  const json document = load_toml(file);
+  const Json document = load_toml(file);
   Table table(document, file.string());
   Experiment experiment;
   const auto planners = table.required<std::vector<std::string>>("planners");
@@ -166,13 +163,13 @@ Experiment load_experiment(const std::filesystem::path& file) {
   experiment.evaluation_steps = table.required<std::int64_t>("evaluation_steps");
   check_at(table.place(), [&] { check_planners(planners); });
 
-  const json trainings = document.value("training", json());
+  const Json trainings = document.value("training", Json());
   if (!trainings.is_array() || trainings.empty()) {
     throw Failure("{}: [[training]] is missing: write one for each network to train",
                   file.string());
   }
   std::set<std::string> names;
-  for (const json& entry : trainings) {
+  for (const Json& entry : trainings) {
     Table training(entry, fmt::format("{}: [[training]] {}", file.string(), names.size() + 1));
     if (!entry.is_object()) throw Failure("{} is no table", training.place());
     experiment.trainings.push_back(

@@ -1,6 +1,6 @@
 // What an experiment is made of: a TOML file beside the scenarios.
 //
-//   planners = ["hierarchical", "rules"]    # arms (proto/planner_pairs.h)
+//   planners = ["hierarchical", "rules"]    # arms (proto/settings/planner_pairs.h)
 //   training_seeds = [1, 2, 3, 4, 5]
 //   evaluation_seeds = [1002, 1003, 1004]
 //   evaluation_steps = 40_000               # for each arm, training seed and evaluation seed
@@ -19,7 +19,7 @@
 #include <string>
 #include <vector>
 
-#include "cluster/evaluation.h"
+#include "cluster/evaluate.h"
 
 namespace corridor::cluster {
 

@@ -1,13 +1,13 @@
 #include "cluster/export.h"
 
-#include <nlohmann/json.hpp>
-
-#include "cluster/checkpoint.h"
-#include "proto/failure.h"
-#include "proto/networks.h"
-#include "proto/run_config.h"
-#include "proto/run_directory.h"
-#include "proto/schedule.h"
+#include "proto/base/failure.h"
+#include "proto/base/json.h"
+#include "proto/config/run_config.h"
+#include "proto/run/fingerprint.h"
+#include "proto/run/networks.h"
+#include "proto/run/run_directory.h"
+#include "proto/settings/schedule.h"
+#include "proto/system/files.h"
 
 namespace corridor::cluster {
 
@@ -21,8 +21,7 @@ void export_run(const std::filesystem::path& run, const std::filesystem::path& t
   }
   const auto networks = newest_networks(trained, config);
   CORRIDOR_CHECK(networks.has_value(), "{}", run.string());
-  nlohmann::ordered_json manifest =
-      nlohmann::ordered_json::parse(read_file(trained.manifest()), nullptr, false);
+  OrderedJson manifest = OrderedJson::parse(read_file(trained.manifest()), nullptr, false);
   if (!manifest.is_object()) throw Failure("{} is no JSON object", trained.manifest().string());
   manifest["fingerprint"] = fingerprint(*checkpoint);
 

@@ -1,15 +1,16 @@
 #include "cluster/hindsight.h"
 
-#include <nlohmann/json.hpp>
-
-#include "cluster/evaluation.h"
-#include "cluster/evaluation_result.h"
-#include "cluster/hindsight_result.h"
-#include "cluster/local.h"
-#include "cluster/plan.h"
-#include "cluster/step_progress.h"
-#include "proto/failure.h"
-#include "proto/run_config.h"
+#include "cluster/evaluate.h"
+#include "cluster/launch/local.h"
+#include "cluster/launch/plan.h"
+#include "cluster/results/evaluation_result.h"
+#include "cluster/results/hindsight_result.h"
+#include "cluster/watch/line_tail.h"
+#include "cluster/watch/step_progress.h"
+#include "proto/base/failure.h"
+#include "proto/base/json.h"
+#include "proto/config/run_config.h"
+#include "proto/system/files.h"
 
 namespace corridor::cluster {
 namespace {

@@ -1,7 +1,7 @@
 // The user's command: starts, watches and stops the other programs, which lie beside it.
 
 #include "cluster/commands.h"
-#include "proto/program.h"
+#include "proto/system/program.h"
 
 int main(int argc, char** argv) {
   return corridor::run_program("corridor",

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "proto/failure.h"
+#include "proto/base/failure.h"
 
 namespace corridor::learner {
 

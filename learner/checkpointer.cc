@@ -1,11 +1,10 @@
 #include "learner/checkpointer.h"
 
-#include <spdlog/spdlog.h>
-
 #include <utility>
 
-#include "proto/failure.h"
-#include "proto/tensor_file.h"
+#include "proto/base/failure.h"
+#include "proto/run/tensor_file.h"
+#include "proto/system/log.h"
 
 namespace corridor::learner {
 
@@ -52,7 +51,7 @@ void Checkpointer::advance() {
   if (writing_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
   writing_.get();
   using Seconds = std::chrono::duration<double>;
-  spdlog::info(
+  log_info(
       "checkpoint after block {}: complete after {:.2f} s, for which training waited {:.1f} ms",
       round_, Seconds(Clock::now() - begun_).count(), 1000.0 * Seconds(training_waited_).count());
 }

@@ -1,4 +1,4 @@
-// Takes the run's checkpoints (proto/checkpoints.h) beside the training: what has to wait for a
+// Takes the run's checkpoints (proto/run/checkpoints.h) beside the training: what has to wait for a
 // disk does so in threads, the learner's and the replay server's. One checkpoint at a time.
 #pragma once
 
@@ -8,10 +8,10 @@
 #include <future>
 #include <string>
 
-#include "learner/checkpoint.h"
+#include "learner/learner_state.h"
 #include "learner/replay_client.h"
-#include "proto/checkpoints.h"
-#include "proto/settings.h"
+#include "proto/run/checkpoints.h"
+#include "proto/settings/settings.h"
 
 namespace corridor::learner {
 

@@ -2,8 +2,8 @@
 
 #include "learner/adam.h"
 #include "learner/dense_passes.h"
-#include "learner/q_network.h"
 #include "learner/td_networks.h"
+#include "learner/torch_q_network.h"
 
 namespace corridor::learner {
 namespace {

@@ -4,7 +4,7 @@
 #include <numeric>
 
 #include "learner/gemm.h"
-#include "proto/failure.h"
+#include "proto/base/failure.h"
 
 namespace corridor::learner {
 namespace {

@@ -1,12 +1,13 @@
-// Forward and backward passes of a Q-network (proto/transition.h: NetworkShape) on the CPU, over
-// flat parameters: matrix products by the BLAS that LibTorch uses, everything between them in plain
-// loops. For networks and batches this small LibTorch's operations cost more than their arithmetic.
+// Forward and backward passes of a Q-network (proto/settings/transition.h: NetworkShape) on the
+// CPU, over flat parameters: matrix products by the BLAS that LibTorch uses, everything between
+// them in plain loops. For networks and batches this small LibTorch's operations cost more than
+// their arithmetic.
 #pragma once
 
 #include <span>
 #include <vector>
 
-#include "proto/transition.h"
+#include "proto/settings/transition.h"
 
 namespace corridor::learner {
 

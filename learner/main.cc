@@ -1,22 +1,23 @@
 // corridor-learner RUN_DIRECTORY: trains a run's planners and publishes their weights.
-#include <spdlog/spdlog.h>
-
-#include <CLI/CLI.hpp>
 #include <chrono>
-#include <nlohmann/json.hpp>
 #include <string>
 
 #include "learner/blas.h"
 #include "learner/publisher.h"
-#include "learner/q_network.h"
 #include "learner/replay_client.h"
+#include "learner/torch_q_network.h"
 #include "learner/training.h"
-#include "proto/endpoint.h"
-#include "proto/metrics.h"
-#include "proto/program.h"
-#include "proto/run_config.h"
-#include "proto/run_directory.h"
-#include "proto/time_account.h"
+#include "proto/base/json.h"
+#include "proto/config/run_config.h"
+#include "proto/run/metrics.h"
+#include "proto/run/run_directory.h"
+#include "proto/system/command_line.h"
+#include "proto/system/files.h"
+#include "proto/system/log.h"
+#include "proto/system/program.h"
+#include "proto/system/time_account.h"
+#include "proto/wire/connect.h"
+#include "proto/wire/endpoint.h"
 
 namespace {
 
@@ -25,15 +26,15 @@ using namespace corridor;
 // Into the log and beside config.toml: what the bits and the speed depend on.
 void record_libraries(const RunDirectory& directory, const std::string& device) {
   const learner::Blas blas = learner::blas_in_use();
-  spdlog::info("LibTorch {} on {}, BLAS {} {}", learner::libtorch_version(), device, blas.library,
-               blas.core);
+  log_info("LibTorch {} on {}, BLAS {} {}", learner::libtorch_version(), device, blas.library,
+           blas.core);
   const std::string warning = learner::warning_about(blas);
-  if (!warning.empty()) spdlog::warn(warning);
-  const nlohmann::json record = {{"libtorch", learner::libtorch_version()},
-                                 {"device", device},
-                                 {"blas", blas.library},
-                                 {"blas_core", blas.core},
-                                 {"blas_config", blas.config}};
+  if (!warning.empty()) log_warning(warning);
+  const Json record = {{"libtorch", learner::libtorch_version()},
+                       {"device", device},
+                       {"blas", blas.library},
+                       {"blas_core", blas.core},
+                       {"blas_config", blas.config}};
   write_file(directory.root() / "learner.json", record.dump(2) + "\n");
 }
 
@@ -74,7 +75,8 @@ int main(int argc, char** argv) {
   CLI::App app("The learner of a corridor run; `corridor` starts it.");
   std::string root;
   app.add_option("RUN_DIRECTORY", root, "the run, as `corridor train` made it")->required();
-  app.set_version_flag("--version", kVersion);
-  CLI11_PARSE(app, argc, argv);
-  return run_program("corridor-learner", [&] { return run(root); });
+  return run_program("corridor-learner", [&] {
+    const auto done = parse_command_line(app, "corridor-learner", argc, argv);
+    return done ? *done : run(root);
+  });
 }

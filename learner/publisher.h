@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "proto/endpoint.h"
-#include "proto/messages.h"
+#include "proto/wire/endpoint.h"
+#include "proto/wire/messages.h"
 
 namespace corridor::learner {
 
@@ -20,7 +20,8 @@ class Publisher {
   Publisher(Server& server, std::size_t actors);
 
   // Makes a version the newest, one above the last one (any at first), and answers those that wait
-  // for it. The one before stays available: an actor may be a version behind (proto/schedule.h).
+  // for it. The one before stays available: an actor may be a version behind
+  // (proto/settings/schedule.h).
   void publish(Weights weights);
 
   // Answers what has come, or comes within `patience`: weights now or once published, outcomes at

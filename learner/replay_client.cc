@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "proto/codec.h"
-#include "proto/failure.h"
+#include "proto/base/failure.h"
+#include "proto/wire/codec.h"
 
 namespace corridor::learner {
 namespace {

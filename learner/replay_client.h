@@ -8,10 +8,10 @@
 #include <optional>
 #include <vector>
 
-#include "proto/codec.h"
-#include "proto/endpoint.h"
-#include "proto/messages.h"
-#include "proto/time_account.h"
+#include "proto/system/time_account.h"
+#include "proto/wire/codec.h"
+#include "proto/wire/endpoint.h"
+#include "proto/wire/messages.h"
 
 namespace corridor::learner {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "proto/failure.h"
+#include "proto/base/failure.h"
 
 namespace corridor::learner {
 std::vector<std::size_t> greedy_actions(std::span<const float> q, std::span<const float> risk,

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "proto/transition.h"
+#include "proto/settings/transition.h"
 
 namespace corridor::learner {
 

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "learner/td_loss.h"
-#include "proto/settings.h"
-#include "proto/transition.h"
+#include "proto/settings/settings.h"
+#include "proto/settings/transition.h"
 
 namespace corridor::learner {
 
@@ -29,7 +29,7 @@ class TdNetworks {
  public:
   virtual ~TdNetworks() = default;
 
-  // Q-values of whole rows (proto/transition.h: RowLayout): by the online network at the
+  // Q-values of whole rows (proto/settings/transition.h: RowLayout): by the online network at the
   // observations, by both at the next observations (the online one's only where double_q wants
   // them). `rows` and the answer stay valid until the next call.
   virtual BatchQValues forward(std::span<const float> rows, int batch) = 0;

@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "learner/td_loss.h"
-#include "proto/failure.h"
+#include "proto/base/failure.h"
 
 namespace corridor::learner {
 namespace {

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "learner/td_networks.h"
-#include "proto/messages.h"
-#include "proto/settings.h"
+#include "proto/settings/settings.h"
+#include "proto/wire/messages.h"
 
 namespace corridor::learner {
 

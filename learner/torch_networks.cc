@@ -2,8 +2,8 @@
 
 #include <utility>
 
-#include "learner/q_network.h"
 #include "learner/td_networks.h"
+#include "learner/torch_q_network.h"
 
 namespace corridor::learner {
 namespace {

@@ -1,7 +1,5 @@
 #include "learner/training.h"
 
-#include <spdlog/spdlog.h>
-
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -9,9 +7,10 @@
 #include <utility>
 #include <vector>
 
-#include "learner/q_network.h"
-#include "proto/failure.h"
-#include "proto/random.h"
+#include "learner/torch_q_network.h"
+#include "proto/base/failure.h"
+#include "proto/base/random.h"
+#include "proto/system/log.h"
 
 namespace corridor::learner {
 namespace {
@@ -86,8 +85,8 @@ void Training::begin_phase(TdState initial) {
 bool Training::run() {
   for (const Weights& weights : state_.published) around_.publisher.publish(weights);
   around_.replay.join(state_.next_round);
-  spdlog::info("goes on with block {} of {} ({}), {} updates done", state_.next_round,
-               schedule_.rounds(), phase_name(phase_), td_->updates());
+  log_info("goes on with block {} of {} ({}), {} updates done", state_.next_round,
+           schedule_.rounds(), phase_name(phase_), td_->updates());
   while (state_.next_round < schedule_.rounds()) {
     const std::uint64_t round = state_.next_round;
     if (around_.stop_requested()) {
@@ -105,7 +104,7 @@ bool Training::run() {
     around_.time.charge(TimePart::kCheckpoint);
   }
   checkpoint_now();
-  spdlog::info("all {} blocks are done", schedule_.rounds());
+  log_info("all {} blocks are done", schedule_.rounds());
   return true;
 }
 
@@ -117,9 +116,8 @@ bool Training::train_round(std::uint64_t round) {
   }
   const std::optional<Opened> opened = await_block(round);
   if (!opened) {
-    spdlog::info(
-        "stops while block {} waits for actors: resuming goes on from the newest checkpoint",
-        round);
+    log_info("stops while block {} waits for actors: resuming goes on from the newest checkpoint",
+             round);
     return false;
   }
   const BlockResult result = train_block(round, *opened);
@@ -153,8 +151,8 @@ void Training::consider(const SelectionOutcome& outcome) {
            1000.0 / static_cast<double>(outcome.steps);
   const std::uint64_t version = schedule_.weights_version(outcome.round);
   const bool better = !state_.best || score_ > state_.best->score;
-  spdlog::info("{} of version {}: score {:.1f} per 1000 steps{}", phase_name(phase_), version,
-               score_, better ? ", the best so far" : "");
+  log_info("{} of version {}: score {:.1f} per 1000 steps{}", phase_name(phase_), version, score_,
+           better ? ", the best so far" : "");
   if (!better) return;
   // Round r drives the version before the newest of block r, or the newest where a phase begins.
   const auto found = std::find_if(state_.published.begin(), state_.published.end(),
@@ -216,7 +214,7 @@ void Training::finish_block(std::uint64_t round, std::uint32_t updates) {
   state_.next_round = round + 1;
 
   if (last_of_phase && phase_ == Phase::kMop) {
-    spdlog::info("the MoP is done and frozen; the BP's phase begins");
+    log_info("the MoP is done and frozen; the BP's phase begins");
     phase_ = Phase::kBp;
     state_.best.reset();
     begin_phase(initial_td_state(next.bp));

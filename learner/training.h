@@ -9,16 +9,16 @@
 #include <optional>
 #include <vector>
 
-#include "learner/checkpoint.h"
 #include "learner/checkpointer.h"
+#include "learner/learner_state.h"
 #include "learner/publisher.h"
 #include "learner/replay_client.h"
 #include "learner/td_update.h"
-#include "proto/metrics.h"
-#include "proto/run_directory.h"
-#include "proto/schedule.h"
-#include "proto/settings.h"
-#include "proto/time_account.h"
+#include "proto/run/metrics.h"
+#include "proto/run/run_directory.h"
+#include "proto/settings/schedule.h"
+#include "proto/settings/settings.h"
+#include "proto/system/time_account.h"
 
 namespace corridor::learner {
 

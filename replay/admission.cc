@@ -4,7 +4,7 @@
 #include <numeric>
 #include <utility>
 
-#include "proto/failure.h"
+#include "proto/base/failure.h"
 
 namespace corridor::replay {
 

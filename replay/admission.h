@@ -10,15 +10,15 @@
 #include <string>
 #include <vector>
 
-#include "proto/messages.h"
-#include "proto/tensor_file.h"
+#include "proto/run/tensor_file.h"
+#include "proto/wire/messages.h"
 
 namespace corridor::replay {
 
 class Admission {
  public:
   // With block b the last to be opened, rounds b + 1 and b + 2 can be driven; round b + 3 needs
-  // weights that block b + 1 yields (proto/schedule.h).
+  // weights that block b + 1 yields (proto/settings/schedule.h).
   static constexpr std::size_t kRoundsAhead = 2;
 
   enum class Parking {

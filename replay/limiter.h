@@ -9,7 +9,7 @@
 
 #include <cstdint>
 
-#include "proto/settings.h"
+#include "proto/settings/settings.h"
 
 namespace corridor::replay {
 

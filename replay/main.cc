@@ -1,14 +1,14 @@
 // corridor-replay RUN_DIRECTORY: the prioritized replay server of a run.
-#include <spdlog/spdlog.h>
-
-#include <CLI/CLI.hpp>
 #include <string>
 
-#include "proto/checkpoints.h"
-#include "proto/metrics.h"
-#include "proto/program.h"
-#include "proto/run_config.h"
-#include "proto/run_directory.h"
+#include "proto/config/run_config.h"
+#include "proto/run/checkpoints.h"
+#include "proto/run/metrics.h"
+#include "proto/run/run_directory.h"
+#include "proto/system/command_line.h"
+#include "proto/system/log.h"
+#include "proto/system/program.h"
+#include "proto/wire/connect.h"
 #include "replay/replay_service.h"
 #include "replay/serve.h"
 
@@ -23,12 +23,12 @@ int run(const std::string& root) {
   replay::ReplayService service(config);
   if (const auto checkpoint = Checkpoints(directory.checkpoints()).newest()) {
     service.load(*checkpoint);
-    spdlog::info("resumes from {}, at round {}", checkpoint->string(), service.next_round());
+    log_info("resumes from {}, at round {}", checkpoint->string(), service.next_round());
   }
   MetricsWriter metrics(directory.metrics("replay"));
   Server server(addresses(config.run, run_id).replay, run_id);
   replay::serve(server, service, metrics, config, stop_requested);
-  spdlog::info("ends at round {}; {} messages dropped", service.next_round(), server.dropped());
+  log_info("ends at round {}; {} messages dropped", service.next_round(), server.dropped());
   return 0;
 }
 
@@ -38,7 +38,8 @@ int main(int argc, char** argv) {
   CLI::App app("Prioritized replay server of a corridor run; `corridor` starts it.");
   std::string root;
   app.add_option("RUN_DIRECTORY", root, "the run, as `corridor train` made it")->required();
-  app.set_version_flag("--version", corridor::kVersion);
-  CLI11_PARSE(app, argc, argv);
-  return corridor::run_program("corridor-replay", [&] { return run(root); });
+  return corridor::run_program("corridor-replay", [&] {
+    const auto done = corridor::parse_command_line(app, "corridor-replay", argc, argv);
+    return done ? *done : run(root);
+  });
 }

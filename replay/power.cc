@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "proto/failure.h"
+#include "proto/base/failure.h"
 
 namespace corridor::replay {
 namespace {

@@ -1,12 +1,12 @@
 #include "replay/replay_service.h"
 
-#include "proto/codec.h"
-#include "proto/failure.h"
+#include "proto/base/failure.h"
+#include "proto/wire/codec.h"
 
 namespace corridor::replay {
 namespace {
 
-constexpr std::size_t kBatchBytesMax = 64 * 1024 * 1024;  // what proto/codec.h carries
+constexpr std::size_t kBatchBytesMax = 64 * 1024 * 1024;  // what proto/wire/codec.h carries
 
 template <typename... Args>
 Refused refused(fmt::format_string<Args...> format, Args&&... args) {

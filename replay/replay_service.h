@@ -1,5 +1,5 @@
 // The replay server without its sockets: what each request does and what answers it
-// (proto/wire.capnp). A function of the requests and, for each client, of their order: how the
+// (proto/wire/wire.capnp). A function of the requests and, for each client, of their order: how the
 // actors' requests fall between the learner's changes no batch.
 //
 // A block is open from its OpenBlock's answer to the next OpenBlock or Save. At the first round of
@@ -16,10 +16,10 @@
 #include <variant>
 #include <vector>
 
-#include "proto/endpoint.h"
-#include "proto/messages.h"
-#include "proto/schedule.h"
-#include "proto/settings.h"
+#include "proto/settings/schedule.h"
+#include "proto/settings/settings.h"
+#include "proto/wire/endpoint.h"
+#include "proto/wire/messages.h"
 #include "replay/admission.h"
 #include "replay/limiter.h"
 #include "replay/snapshot.h"
@@ -63,7 +63,7 @@ class ReplayService {
   // Chunks of rounds < next_round() are in the store.
   std::uint64_t next_round() const { return admission_.next_round(); }
 
-  // Named values (proto/metrics.h) as of the last block; equal in equal runs.
+  // Named values (proto/run/metrics.h) as of the last block; equal in equal runs.
   std::vector<std::pair<std::string, double>> metrics() const;
 
   // All of rounds < next_round(), nothing parked, but for rows that `previous` (a checkpoint of

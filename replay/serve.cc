@@ -1,17 +1,16 @@
 #include "replay/serve.h"
 
-#include <spdlog/spdlog.h>
-
 #include <chrono>
 #include <optional>
 #include <string>
 #include <thread>
 #include <utility>
 
-#include "proto/codec.h"
-#include "proto/random.h"
-#include "proto/schedule.h"
-#include "proto/time_account.h"
+#include "proto/base/random.h"
+#include "proto/settings/schedule.h"
+#include "proto/system/log.h"
+#include "proto/system/time_account.h"
+#include "proto/wire/codec.h"
 
 namespace corridor::replay {
 namespace {
@@ -55,8 +54,8 @@ class Loop {
       } else if (const auto* batch = std::get_if<EncodedBatch>(&outcome)) {
         server_.reply(request, batch->body);
       } else if (const auto* refusal = std::get_if<Refused>(&outcome)) {
-        spdlog::warn("refused {} {}: {}", request.client.role == Role::kActor ? "actor" : "learner",
-                     request.client.index, refusal->text);
+        log_warning("refused {} {}: {}", request.client.role == Role::kActor ? "actor" : "learner",
+                    request.client.index, refusal->text);
         server_.refuse(request, refusal->text);
       } else {
         // An earlier OpenBlock that still waits came from a learner that has been replaced.
@@ -65,7 +64,7 @@ class Loop {
         write_metrics();
       }
     } catch (const Malformed& malformed) {
-      spdlog::warn("malformed request: {}", malformed.what());
+      log_warning("malformed request: {}", malformed.what());
       server_.reject_malformed(request, malformed.what());
     }
     time_.charge(TimePart::kTransport);
@@ -87,7 +86,7 @@ class Loop {
     } else if (Clock::now() - opening_since_ > kSilence) {
       std::string actors;
       for (const std::uint32_t actor : service_.awaited()) actors += fmt::format(" {}", actor);
-      spdlog::info("block {} waits for the chunks of actors{}", service_.next_round(), actors);
+      log_info("block {} waits for the chunks of actors{}", service_.next_round(), actors);
       opening_since_ = Clock::now();
     }
   }

@@ -3,18 +3,18 @@
 
 #include <functional>
 
-#include "proto/endpoint.h"
-#include "proto/metrics.h"
-#include "proto/settings.h"
+#include "proto/run/metrics.h"
+#include "proto/settings/settings.h"
+#include "proto/wire/endpoint.h"
 #include "replay/replay_service.h"
 
 namespace corridor::replay {
 
 // Serves until `stop` says so, which is asked at least ten times a second. Logs whom it waits for
 // when a block stays unopened for long. Every 32 blocks it writes the service's metrics, and
-// where its time went (proto/time_account.h): it waits for actors where a block is wanted and
-// chunks are missing, else for the learner. Requests that make no sense are refused. Throws Failure
-// when the metrics cannot be written.
+// where its time went (proto/system/time_account.h): it waits for actors where a block is wanted
+// and chunks are missing, else for the learner. Requests that make no sense are refused. Throws
+// Failure when the metrics cannot be written.
 void serve(Server& server, ReplayService& service, MetricsWriter& metrics, const RunConfig& config,
            const std::function<bool()>& stop);
 

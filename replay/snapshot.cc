@@ -3,8 +3,9 @@
 #include <chrono>
 #include <utility>
 
-#include "proto/failure.h"
-#include "proto/run_directory.h"
+#include "proto/base/failure.h"
+#include "proto/run/run_directory.h"
+#include "proto/system/files.h"
 
 namespace corridor::replay {
 namespace {

@@ -1,4 +1,4 @@
-// The replay's part of a checkpoint (proto/checkpoints.h), and the thread that writes it.
+// The replay's part of a checkpoint (proto/run/checkpoints.h), and the thread that writes it.
 #pragma once
 
 #include <cstddef>
@@ -6,8 +6,8 @@
 #include <future>
 #include <vector>
 
-#include "proto/checkpoints.h"
-#include "proto/tensor_file.h"
+#include "proto/run/checkpoints.h"
+#include "proto/run/tensor_file.h"
 
 namespace corridor::replay {
 

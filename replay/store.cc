@@ -7,8 +7,8 @@
 #include <cmath>
 #include <cstring>
 
-#include "proto/failure.h"
-#include "proto/random.h"
+#include "proto/base/failure.h"
+#include "proto/base/random.h"
 #include "replay/power.h"
 
 namespace corridor::replay {

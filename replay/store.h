@@ -17,10 +17,10 @@
 #include <string>
 #include <vector>
 
-#include "proto/random.h"
-#include "proto/settings.h"
-#include "proto/tensor_file.h"
-#include "proto/transition.h"
+#include "proto/base/random.h"
+#include "proto/run/tensor_file.h"
+#include "proto/settings/settings.h"
+#include "proto/settings/transition.h"
 #include "replay/sum_tree.h"
 
 namespace corridor::replay {

@@ -5,9 +5,10 @@
 #include <system_error>
 #include <vector>
 
-#include "proto/failure.h"
-#include "proto/run_directory.h"
-#include "proto/subprocess.h"
+#include "proto/base/failure.h"
+#include "proto/run/run_directory.h"
+#include "proto/system/files.h"
+#include "proto/system/subprocess.h"
 
 namespace corridor::scenarios {
 namespace {

@@ -12,7 +12,7 @@
 #include <filesystem>
 #include <string>
 
-#include "proto/settings.h"
+#include "proto/settings/settings.h"
 
 namespace corridor::scenarios {
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "actor/driving/scene.h"
-#include "proto/settings.h"
+#include "proto/settings/settings.h"
 
 namespace corridor::driving {
 

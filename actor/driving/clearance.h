@@ -4,7 +4,7 @@
 #include <span>
 
 #include "actor/driving/scene.h"
-#include "proto/settings.h"
+#include "proto/settings/settings.h"
 
 namespace corridor::driving {
 

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "actor/driving/scene.h"
-#include "proto/settings.h"
+#include "proto/settings/settings.h"
 
 namespace corridor::driving {
 

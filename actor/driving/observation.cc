@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "actor/driving/clearance.h"
-#include "proto/failure.h"
+#include "proto/base/failure.h"
 
 namespace corridor::driving {
 namespace {

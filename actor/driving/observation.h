@@ -1,4 +1,4 @@
-// What the two networks are fed. One index table each; sizes in proto/transition.h.
+// What the two networks are fed. One index table each; sizes in proto/settings/transition.h.
 #pragma once
 
 #include <span>

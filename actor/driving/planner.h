@@ -14,9 +14,9 @@ namespace corridor::driving {
 // One instant, seen once and handed to both planners.
 struct Situation {
   Scene scene;
-  std::vector<CorridorGaps> gaps;        // of the whole road
-  Command previous = Command::kKeep;     // command of the last step
-  int step = 0;                          // of the episode
+  std::vector<CorridorGaps> gaps;     // of the whole road
+  Command previous = Command::kKeep;  // command of the last step
+  int step = 0;                       // of the episode
 };
 
 class BehaviourPlanner {

@@ -3,7 +3,7 @@
 
 #include "actor/driving/action.h"
 #include "actor/driving/scene.h"
-#include "proto/settings.h"
+#include "proto/settings/settings.h"
 
 namespace corridor::driving {
 

@@ -1,5 +1,5 @@
-// State pre-processing (paper section III-C): which corridors the shared MoP is shown for a command,
-// so that earning its reward, which is in the window's middle, carries the command out.
+// State pre-processing (paper section III-C): which corridors the shared MoP is shown for a
+// command, so that earning its reward, which is in the window's middle, carries the command out.
 #pragma once
 
 #include <vector>

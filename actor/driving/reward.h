@@ -16,10 +16,10 @@ double bp_reward(int lane_before, const Ego& after, const DrivingSettings& setti
 // What training adds to r_BP for a step, and no reported reward has: shaping of ours.
 double bp_shaping(bool collided, bool lane_changed, const BpRewardSettings& settings);
 
-// r_MoP: 1 when the ego is in the middle of `window` (the one that it acted in, not yet shifted) AND
-// EITHER its speed is within speed_tolerance_mps of the BP's target speed OR every open corridor of
-// the window is blocked (a leader within gap_range_m) and the smallest front gap among them is near
-// d = headway_s * v + standstill_gap_m; minus acceleration_penalty * |acceleration|.
+// r_MoP: 1 when the ego is in the middle of `window` (the one that it acted in, not yet shifted)
+// AND EITHER its speed is within speed_tolerance_mps of the BP's target speed OR every open
+// corridor of the window is blocked (a leader within gap_range_m) and the smallest front gap among
+// them is near d = headway_s * v + standstill_gap_m; minus acceleration_penalty * |acceleration|.
 // `gaps` are those of `after`.
 double mop_reward(const Scene& after, const std::vector<CorridorGaps>& gaps, const Window& window,
                   const DrivingSettings& settings);

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "actor/driving/prediction.h"
-#include "proto/failure.h"
-#include "proto/random.h"
+#include "proto/base/failure.h"
+#include "proto/base/random.h"
 
 namespace corridor::driving {
 namespace {

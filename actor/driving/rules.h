@@ -3,7 +3,7 @@
 #pragma once
 
 #include "actor/driving/planner.h"
-#include "proto/settings.h"
+#include "proto/settings/settings.h"
 
 namespace corridor::driving {
 

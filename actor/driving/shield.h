@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "actor/driving/planner.h"
-#include "proto/settings.h"
+#include "proto/settings/settings.h"
 
 namespace corridor::driving {
 

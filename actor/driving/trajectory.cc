@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "actor/driving/corridors.h"
-#include "proto/failure.h"
+#include "proto/base/failure.h"
 
 namespace corridor::driving {
 namespace {

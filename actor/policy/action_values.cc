@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "proto/failure.h"
+#include "proto/base/failure.h"
 
 namespace corridor::policy {
 

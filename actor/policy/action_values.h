@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "actor/policy/q_network.h"
-#include "proto/settings.h"
+#include "proto/settings/settings.h"
 
 namespace corridor::policy {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "proto/random.h"
+#include "proto/base/random.h"
 
 namespace corridor::policy {
 

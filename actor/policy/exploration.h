@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "proto/settings.h"
+#include "proto/settings/settings.h"
 
 namespace corridor::policy {
 

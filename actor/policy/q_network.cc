@@ -2,18 +2,15 @@
 
 #include <utility>
 
-#include "proto/failure.h"
+#include "proto/base/failure.h"
 
 namespace corridor::policy {
 namespace {
 
-using RowMajor = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-
 void apply(const NetworkShape::Layer& layer, const std::vector<float>& parameters,
-           const Eigen::Ref<const Eigen::VectorXf>& input, Eigen::VectorXf& output) {
-  const Eigen::Map<const RowMajor> weights(parameters.data() + layer.weights, layer.outputs,
-                                           layer.inputs);
-  const Eigen::Map<const Eigen::VectorXf> biases(parameters.data() + layer.biases, layer.outputs);
+           const VectorView& input, Vector& output) {
+  const RowMajorMap weights(parameters.data() + layer.weights, layer.outputs, layer.inputs);
+  const VectorMap biases(parameters.data() + layer.biases, layer.outputs);
   output.noalias() = weights * input;
   output += biases;
 }
@@ -30,8 +27,7 @@ QNetwork::QNetwork(NetworkShape shape, std::vector<float> parameters)
 std::span<const float> QNetwork::q_values(std::span<const float> observation) {
   CORRIDOR_CHECK(observation.size() == static_cast<std::size_t>(shape_.observations),
                  "{} numbers for {} inputs", observation.size(), shape_.observations);
-  const Eigen::Map<const Eigen::VectorXf> input(observation.data(),
-                                                static_cast<Eigen::Index>(observation.size()));
+  const VectorMap input(observation.data(), static_cast<int>(observation.size()));
   const std::size_t hidden = shape_.hidden.size();
   for (std::size_t i = 0; i < hidden; ++i) {
     if (i == 0) {
@@ -42,10 +38,10 @@ std::span<const float> QNetwork::q_values(std::span<const float> observation) {
     activations_[i] = activations_[i].cwiseMax(0.0f);
   }
   const auto& last_hidden = activations_[hidden - 1];
-  Eigen::VectorXf& q = activations_.back();
+  Vector& q = activations_.back();
   apply(layers_.back(), parameters_, last_hidden, q);
   if (shape_.dueling) {
-    Eigen::VectorXf& value = activations_[hidden];
+    Vector& value = activations_[hidden];
     apply(layers_[hidden], parameters_, last_hidden, value);
     q.array() += value[0] - q.mean();
   }

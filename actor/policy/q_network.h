@@ -2,11 +2,11 @@
 // LibTorch. tests/actor/policy holds it against the learner's.
 #pragma once
 
-#include <Eigen/Core>
 #include <span>
 #include <vector>
 
-#include "proto/transition.h"
+#include "actor/algebra/matrix.h"
+#include "proto/settings/transition.h"
 
 namespace corridor::policy {
 
@@ -25,7 +25,7 @@ class QNetwork {
   NetworkShape shape_;
   std::vector<NetworkShape::Layer> layers_;
   std::vector<float> parameters_;
-  std::vector<Eigen::VectorXf> activations_;  // one a layer
+  std::vector<Vector> activations_;  // one a layer
 };
 
 }  // namespace corridor::policy

@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-#include "proto/failure.h"
+#include "proto/base/failure.h"
 
 namespace corridor::vehicle {
 namespace {

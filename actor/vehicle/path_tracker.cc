@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "proto/failure.h"
+#include "proto/base/failure.h"
 
 namespace corridor::vehicle {
 namespace {
@@ -23,15 +23,15 @@ constexpr int kSpeeds = 60;
 constexpr double kErrorCost = 25.0, kHeadingCost = 100.0, kSteeringCost = 20'000.0;
 
 // Errors across the path and in heading, each with its rate, and the steering angle, which lags.
-using State = Eigen::Matrix<double, 5, 1>;
-using Matrix = Eigen::Matrix<double, 5, 5>;
-using Row = Eigen::Matrix<double, 1, 5>;
+using State = Matrix<5, 1>;
+using Square = Matrix<5, 5>;
+using Row = Matrix<1, 5>;
 
-Row lqr(const Matrix& a, const State& b, const Matrix& q, double r) {
-  Matrix p = q;
+Row lqr(const Square& a, const State& b, const Square& q, double r) {
+  Square p = q;
   for (int i = 0; i < 20'000; ++i) {
     const Row k = (b.transpose() * p * a) / (r + b.dot(p * b));
-    const Matrix next = q + a.transpose() * p * (a - b * k);
+    const Square next = q + a.transpose() * p * (a - b * k);
     const double change = (next - p).cwiseAbs().maxCoeff() / next.cwiseAbs().maxCoeff();
     p = (next + next.transpose()) / 2;
     if (change < 1e-12) break;
@@ -64,7 +64,7 @@ PathTracker::PathTracker(const CarModel& car, const TyreModel& tyre, double peri
     const double v = kSpeedMin_mps + i * kSpeedStep_mps;
     // Errors across the path and in heading, and their rates (Rajamani 2.45).
     const double lag = car.steering_gain_per_s;
-    Matrix a;
+    Square a;
     a << 0, 1, 0, 0, 0,  //
         0, -(cf + cr) / (mass_kg * v), (cf + cr) / mass_kg, (cr * lr - cf * lf) / (mass_kg * v),
         cf / mass_kg,   //
@@ -75,13 +75,13 @@ PathTracker::PathTracker(const CarModel& car, const TyreModel& tyre, double peri
     State b = State::Zero();
     b[4] = lag;
     // Discrete, the steering held for a period: (I - a h / 2)^-1 (I + a h / 2).
-    const Matrix half = a * period_s / 2;
-    const Matrix inverse = (Matrix::Identity() - half).inverse();
-    Matrix q = Matrix::Zero();
+    const Square half = a * period_s / 2;
+    const Square inverse = (Square::Identity() - half).inverse();
+    Square q = Square::Zero();
     q(0, 0) = kErrorCost;
     q(2, 2) = kHeadingCost;
     gains_.push_back(
-        lqr(inverse * (Matrix::Identity() + half), inverse * b * period_s, q, kSteeringCost));
+        lqr(inverse * (Square::Identity() + half), inverse * b * period_s, q, kSteeringCost));
   }
 }
 

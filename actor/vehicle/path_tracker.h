@@ -3,9 +3,9 @@
 // Pure.
 #pragma once
 
-#include <Eigen/Dense>
 #include <vector>
 
+#include "actor/algebra/matrix.h"
 #include "actor/vehicle/vehicle.h"
 #include "actor/vehicle/vehicle_model.h"
 
@@ -31,7 +31,7 @@ class PathTracker {
   double steering_rad(const VehicleState& state, const PathPoint& path) const;
 
  private:
-  using Gain = Eigen::Matrix<double, 1, 5>;
+  using Gain = Matrix<1, 5>;
   Gain gain_at(double speed_mps) const;
 
   CarModel car_;

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "proto/failure.h"
+#include "proto/base/failure.h"
 
 namespace corridor::vehicle {
 namespace {

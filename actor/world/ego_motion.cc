@@ -5,7 +5,7 @@
 #include "actor/vehicle/ode_vehicle.h"
 #include "actor/world/dynamic_motion.h"
 #include "actor/world/kinematic_motion.h"
-#include "proto/failure.h"
+#include "proto/base/failure.h"
 
 namespace corridor::world {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "actor/driving/scene.h"
 #include "actor/driving/trajectory.h"
-#include "proto/settings.h"
+#include "proto/settings/settings.h"
 
 namespace corridor::world {
 

@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "actor/world/ego_motion.h"
-#include "proto/random.h"
+#include "proto/base/random.h"
 
 namespace corridor::world {
 namespace {

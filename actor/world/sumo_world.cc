@@ -9,8 +9,8 @@
 #include <utility>
 #include <xercesc/util/PlatformUtils.hpp>
 
-#include "proto/failure.h"
-#include "proto/random.h"
+#include "proto/base/failure.h"
+#include "proto/base/random.h"
 
 namespace corridor::world {
 namespace {

@@ -15,8 +15,8 @@
 #include "actor/world/ego_motion.h"
 #include "actor/world/traffic.h"
 #include "actor/world/world.h"
-#include "proto/settings.h"
-#include "proto/time_account.h"
+#include "proto/settings/settings.h"
+#include "proto/system/time_account.h"
 
 namespace corridor::world {
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "proto/failure.h"
-#include "proto/random.h"
+#include "proto/base/failure.h"
+#include "proto/base/random.h"
 
 namespace corridor::world {
 namespace {

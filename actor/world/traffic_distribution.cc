@@ -1,6 +1,6 @@
 #include "actor/world/traffic_distribution.h"
 
-#include "proto/random.h"
+#include "proto/base/random.h"
 
 namespace corridor::world {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "proto/settings.h"
+#include "proto/settings/settings.h"
 
 namespace corridor::world {
 

@@ -2,16 +2,15 @@
 
 #include <gtest/gtest.h>
 
-#include <nlohmann/json.hpp>
-
-#include "proto/failure.h"
+#include "proto/base/failure.h"
+#include "proto/base/json.h"
+#include "proto/system/files.h"
 #include "tests/support/fake_world.h"
 #include "tests/support/temporary_directory.h"
 
 namespace corridor::actor {
 namespace {
 
-using nlohmann::json;
 using testing_support::FakeWorld;
 using testing_support::TemporaryDirectory;
 
@@ -23,7 +22,7 @@ class Evaluation : public testing::Test {
                 std::vector<float>(config.parameters(Phase::kBp), 0.01f)};
   }
 
-  json evaluate_pair(const char* pair, std::int64_t steps = 150) {
+  Json evaluate_pair(const char* pair, std::int64_t steps = 150) {
     FakeWorld world(config);
     actor::evaluate(config, networks, {planner_pair(pair), 5, steps, {}}, run, world,
                     [](std::int64_t) { return true; });
@@ -37,12 +36,12 @@ class Evaluation : public testing::Test {
 };
 
 TEST_F(Evaluation, DrivesExactlyTheStepsAskedForAndSumsThemUp) {
-  const json totals = evaluate_pair("rules");
+  const Json totals = evaluate_pair("rules");
   EXPECT_EQ(totals["steps"], 150);
   EXPECT_EQ(totals["episodes"], totals["per_episode"].size());
   std::int64_t steps = 0;
   double reward = 0.0;
-  for (const json& episode : totals["per_episode"]) {
+  for (const Json& episode : totals["per_episode"]) {
     steps += episode["steps"].get<std::int64_t>();
     reward += episode["bp_reward"].get<double>();
     std::int64_t lane_steps = 0;
@@ -61,13 +60,13 @@ TEST_F(Evaluation, DrivesExactlyTheStepsAskedForAndSumsThemUp) {
 TEST_F(Evaluation, GivesEveryPairTheSameTraffic) {
   for (const PlannerPair& pair : kPlannerPairs) {
     evaluate_pair(pair.name, 30);
-    const json episode = read_json(run.episodes() / (std::string(pair.name) + "_5_0.json"));
+    const Json episode = read_json(run.episodes() / (std::string(pair.name) + "_5_0.json"));
     EXPECT_EQ(episode["episode_seed"].get<std::uint64_t>(), test_episode_seed(5, 0)) << pair.name;
   }
 }
 
 TEST_F(Evaluation, WritesTheSameFilesTwice) {
-  const json first = evaluate_pair("hierarchical");
+  const Json first = evaluate_pair("hierarchical");
   EXPECT_EQ(first, evaluate_pair("hierarchical"));
 }
 
@@ -85,7 +84,7 @@ TEST_F(Evaluation, AnEpisodeDrivenAgainHasTheSameTrajectory) {
 TEST_F(Evaluation, AChangedActionChangesTheTrajectory) {
   evaluate_pair("rules");
   const auto file = run.episodes() / "rules_5_0.json";
-  json episode = read_json(file);
+  Json episode = read_json(file);
   const int old_action = episode["actions"][3].get<int>();
   episode["actions"][3] = old_action == 0 ? 26 : 0;
   write_file(file, episode.dump());
@@ -101,7 +100,7 @@ TEST_F(Evaluation, RefusesWhatIsNoEpisode) {
   write_file(file, "{}");
   EXPECT_THROW(redrive(config, file, world, {}), Failure);
   evaluate_pair("rules");
-  json episode = read_json(run.episodes() / "rules_5_0.json");
+  Json episode = read_json(run.episodes() / "rules_5_0.json");
   episode["actions"].erase(0);
   write_file(file, episode.dump());
   EXPECT_THROW(redrive(config, file, world, {}), Failure);

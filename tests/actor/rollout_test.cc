@@ -4,8 +4,8 @@
 
 #include <set>
 
-#include "proto/failure.h"
-#include "proto/random.h"
+#include "proto/base/failure.h"
+#include "proto/base/random.h"
 #include "tests/support/fake_world.h"
 
 namespace corridor::actor {

@@ -9,7 +9,7 @@
 #include <cerrno>
 #include <stdexcept>
 
-#include "proto/failure.h"
+#include "proto/base/failure.h"
 
 namespace corridor::actor {
 namespace {

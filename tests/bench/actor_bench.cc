@@ -1,4 +1,4 @@
-// What an actor's step costs beside SUMO's own, part by part (proto/time_account.h).
+// What an actor's step costs beside SUMO's own, part by part (proto/system/time_account.h).
 #include <benchmark/benchmark.h>
 
 #include <map>
@@ -8,7 +8,7 @@
 #include "actor/episode.h"
 #include "actor/policy/action_values.h"
 #include "actor/world/sumo_world.h"
-#include "proto/time_account.h"
+#include "proto/system/time_account.h"
 #include "scenarios/sumo_files.h"
 #include "tests/bench/paper.h"
 #include "tests/support/temporary_directory.h"

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "learner/q_network.h"
 #include "learner/td_networks.h"
 #include "learner/td_update.h"
-#include "proto/random.h"
+#include "learner/torch_q_network.h"
+#include "proto/base/random.h"
 #include "tests/bench/paper.h"
 #include "tests/bench/td_floor.h"
 

@@ -1,7 +1,5 @@
 // manoeuvres: a lane change with a temporary cancellation, through the whole chain from targets to
 // the car, as the paper's figure shows it; prints one line every 0.05 s for docs/draw_manoeuvres.
-#include <spdlog/fmt/fmt.h>
-
 #include <cmath>
 #include <memory>
 #include <numbers>
@@ -9,6 +7,7 @@
 
 #include "actor/vehicle/ode_vehicle.h"
 #include "actor/world/dynamic_motion.h"
+#include "proto/base/format.h"
 
 namespace {
 

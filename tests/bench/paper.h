@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "proto/run_config.h"
+#include "proto/config/run_config.h"
 
 namespace corridor::bench {
 

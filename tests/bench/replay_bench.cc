@@ -7,8 +7,8 @@
 #include <numeric>
 #include <vector>
 
-#include "proto/random.h"
-#include "proto/transition.h"
+#include "proto/base/random.h"
+#include "proto/settings/transition.h"
 #include "replay/power.h"
 #include "replay/store.h"
 #include "replay/sum_tree.h"

@@ -9,7 +9,6 @@
 #include <time.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -21,12 +20,13 @@
 #include <thread>
 #include <vector>
 
-#include "proto/codec.h"
-#include "proto/endpoint.h"
-#include "proto/failure.h"
-#include "proto/metrics.h"
-#include "proto/program.h"
-#include "proto/random.h"
+#include "proto/base/failure.h"
+#include "proto/base/random.h"
+#include "proto/run/metrics.h"
+#include "proto/system/command_line.h"
+#include "proto/system/program.h"
+#include "proto/wire/codec.h"
+#include "proto/wire/endpoint.h"
 #include "replay/replay_service.h"
 #include "replay/serve.h"
 #include "tests/support/temporary_directory.h"

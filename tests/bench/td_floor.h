@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "proto/transition.h"
+#include "proto/settings/transition.h"
 
 namespace corridor::bench {
 

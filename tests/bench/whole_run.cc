@@ -1,19 +1,20 @@
 // whole_run SCENARIO: trains as a user would, and says where the cores' time went: wall time times
-// cores, by phase and part, from the metrics that every run writes (proto/time_account.h).
-#include <CLI/CLI.hpp>
+// cores, by phase and part, from the metrics that every run writes (proto/system/time_account.h).
 #include <cstdio>
 #include <fstream>
 #include <map>
 #include <string>
 #include <vector>
 
-#include "cluster/core_time.h"
-#include "cluster/local.h"
-#include "cluster/progress.h"
-#include "proto/failure.h"
-#include "proto/program.h"
-#include "proto/run_config.h"
-#include "proto/run_directory.h"
+#include "cluster/launch/local.h"
+#include "cluster/watch/core_time.h"
+#include "cluster/watch/training_progress.h"
+#include "proto/base/failure.h"
+#include "proto/config/run_config.h"
+#include "proto/run/metrics.h"
+#include "proto/run/run_directory.h"
+#include "proto/system/command_line.h"
+#include "proto/system/program.h"
 #include "tests/bench/td_floor.h"
 #include "tests/support/command.h"
 #include "tests/support/temporary_directory.h"
@@ -22,8 +23,8 @@ namespace corridor::bench {
 namespace {
 
 using cluster::CoreTime;
-using cluster::MetricsLine;
-using cluster::value_of;
+using corridor::MetricsLine;
+using corridor::value_of;
 
 constexpr double kDeadline_s = 3600.0;
 const std::string kBin = CORRIDOR_BIN_DIR;
@@ -32,7 +33,7 @@ std::vector<MetricsLine> lines_of(const std::filesystem::path& file) {
   std::vector<MetricsLine> lines;
   std::ifstream in(file);
   for (std::string text; std::getline(in, text);) {
-    if (auto line = cluster::parse_metrics_line(text)) lines.push_back(std::move(*line));
+    if (auto line = parse_metrics_line(text)) lines.push_back(std::move(*line));
   }
   return lines;
 }
@@ -116,7 +117,7 @@ void print(const std::map<std::string, PhaseTime>& phases, const RunConfig& conf
 void print_memory(const RunDirectory& run) {
   std::printf("\npeak resident memory:");
   for (const char* process : {"actor-0", "learner", "replay"}) {
-    const auto line = cluster::last_metrics_line(run.metrics(process));
+    const auto line = last_metrics_line(run.metrics(process));
     if (line) std::printf("  %s %.0f MB", process, value_of(line->values, "memory_mb"));
   }
   std::printf("\n");

@@ -3,8 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "proto/failure.h"
-#include "proto/program.h"
+#include "proto/base/failure.h"
+#include "proto/system/program.h"
 
 namespace corridor::cluster {
 namespace {
@@ -30,8 +30,8 @@ Outcome run(std::vector<const char*> arguments) {
   return outcome;
 }
 
-constexpr const char* kCommands[] = {"train",       "resume",  "evaluate", "hindsight", "report",
-                                     "fingerprint", "redrive", "check"};
+constexpr const char* kCommands[] = {"train",  "resume",      "evaluate", "hindsight",
+                                     "report", "fingerprint", "redrive",  "check"};
 
 TEST(Commands, EveryOneHasHelpWithExamplesAndAVersion) {
   const Outcome overview = run({"--help"});

@@ -3,8 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "proto/failure.h"
-#include "proto/run_directory.h"
+#include "proto/base/failure.h"
+#include "proto/run/run_directory.h"
+#include "proto/system/files.h"
 #include "tests/support/temporary_directory.h"
 
 namespace corridor::cluster {

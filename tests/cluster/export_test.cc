@@ -3,8 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "proto/checkpoints.h"
-#include "proto/failure.h"
+#include "proto/base/failure.h"
+#include "proto/run/checkpoints.h"
 #include "tests/support/temporary_directory.h"
 #include "tests/support/untrained_run.h"
 

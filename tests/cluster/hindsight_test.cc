@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "proto/failure.h"
+#include "proto/base/failure.h"
 #include "tests/support/temporary_directory.h"
 #include "tests/support/untrained_run.h"
 

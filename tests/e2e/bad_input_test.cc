@@ -5,8 +5,8 @@
 #include <csignal>
 #include <thread>
 
-#include "proto/checkpoints.h"
-#include "proto/random.h"
+#include "proto/base/random.h"
+#include "proto/run/checkpoints.h"
 #include "tests/e2e/run_support.h"
 
 namespace corridor::e2e {

@@ -1,7 +1,6 @@
 #include "tests/e2e/chaos.h"
 
 #include <signal.h>
-#include <spdlog/fmt/fmt.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -11,7 +10,8 @@
 #include <set>
 #include <sstream>
 
-#include "proto/random.h"
+#include "proto/base/format.h"
+#include "proto/base/random.h"
 #include "tests/support/command.h"
 #include "tests/support/processes.h"
 

@@ -1,12 +1,12 @@
 // chaos SCENARIO: trains it undisturbed, then again and again while processes are killed, stopped
 // and asked to end at random, and compares the fingerprints. docs/operations.md quotes it.
-#include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdio>
 #include <fstream>
 #include <iostream>
 
-#include "proto/program.h"
+#include "proto/system/command_line.h"
+#include "proto/system/program.h"
 #include "tests/e2e/chaos.h"
 #include "tests/support/command.h"
 

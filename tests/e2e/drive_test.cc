@@ -1,7 +1,8 @@
 // Planners in cars with dynamics of their own, and what people are shown of it.
 #include <gmock/gmock.h>
 
-#include "proto/run_directory.h"
+#include "proto/run/run_directory.h"
+#include "proto/system/files.h"
 #include "tests/e2e/run_support.h"
 
 namespace corridor::e2e {

@@ -1,9 +1,9 @@
 // `corridor experiment`: stopped, killed, gone on with; refused where it would mix two experiments.
 #include <gmock/gmock.h>
 
-#include <nlohmann/json.hpp>
-
-#include "proto/run_directory.h"
+#include "proto/base/json.h"
+#include "proto/run/run_directory.h"
+#include "proto/system/files.h"
 #include "tests/e2e/run_support.h"
 
 namespace corridor::e2e {
@@ -70,7 +70,7 @@ TEST_F(Experiment, KilledAndStoppedItGoesOnAndGivesTheSameResults) {
     EXPECT_EQ(read_file(broken / file), read_file(whole / file));
   }
   // Rules learn nothing: driven beside the first training seed only.
-  EXPECT_EQ(nlohmann::json::parse(read_file(whole / "results.json")).size(), 2u * 2 + 2);
+  EXPECT_EQ(Json::parse(read_file(whole / "results.json")).size(), 2u * 2 + 2);
 
   const CommandResult again = run_command(command(broken), kDeadline_s);
   EXPECT_EQ(again.status, 0) << again.output;

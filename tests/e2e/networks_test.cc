@@ -1,9 +1,9 @@
 // Networks that go from one run to another: `export`, `evaluate` of what it wrote, `train --from`.
 #include <gmock/gmock.h>
 
-#include <nlohmann/json.hpp>
-
-#include "proto/run_directory.h"
+#include "proto/base/json.h"
+#include "proto/run/run_directory.h"
+#include "proto/system/files.h"
 #include "tests/e2e/run_support.h"
 
 namespace corridor::e2e {
@@ -17,10 +17,9 @@ TEST(Networks, OfATrainedRunDriveElsewhereAndAreTrainedOnReproducibly) {
   ASSERT_EQ(run_command(train_command(run), kDeadline_s).status, 0);
   const CommandResult copied = run_command({kCorridor, "export", run, exported}, kDeadline_s);
   ASSERT_EQ(copied.status, 0) << copied.output;
-  EXPECT_EQ(nlohmann::json::parse(read_file(exported / "manifest.json"))["fingerprint"]
-                    .get<std::string>() +
-                "\n",
-            fingerprint(run));
+  EXPECT_EQ(
+      Json::parse(read_file(exported / "manifest.json"))["fingerprint"].get<std::string>() + "\n",
+      fingerprint(run));
   // As a version control system would bring it.
   for (const char* empty : {"sumo", "log", "metrics", "checkpoints", "evaluation"}) {
     std::filesystem::remove_all(exported / empty);

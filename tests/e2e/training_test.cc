@@ -1,12 +1,9 @@
 // The whole system on two cores: two actors in real SUMO traffic, the replay server, the learner.
-#include <nlohmann/json.hpp>
-
+#include "proto/base/json.h"
 #include "tests/e2e/run_support.h"
 
 namespace corridor::e2e {
 namespace {
-
-using nlohmann::json;
 
 TEST(Training, TrainsBothPlannersEvaluatesThemAndDrivesTheirEpisodesAgain) {
   TemporaryDirectory temporary;
@@ -25,9 +22,9 @@ TEST(Training, TrainsBothPlannersEvaluatesThemAndDrivesTheirEpisodesAgain) {
   expect_nothing_left(run);
   EXPECT_EQ(shared_memory_files(), shared_memory);
 
-  const json rows = json::parse(std::ifstream(table));
+  const Json rows = Json::parse(std::ifstream(table));
   ASSERT_EQ(rows.size(), 10u);
-  for (const json& row : rows) {
+  for (const Json& row : rows) {
     EXPECT_EQ(row.at("steps"), 300) << row;
     const double distance_km = row.at("distance_km").get<double>();
     EXPECT_NEAR(row.at("mean_speed_kph").get<double>(), distance_km / (300.0 / 3600.0), 1e-6)
@@ -83,14 +80,14 @@ TEST(Training, TrainsBothPlannersEvaluatesThemAndDrivesTheirEpisodesAgain) {
   EXPECT_EQ(again.status, 0) << again.output;
 }
 
-// With Debian 12's libraries, on every x86-64 processor with AVX2 (learner/blas.h). Who changes what
-// a training computes changes this, and nobody else.
+// With Debian 12's libraries, on every x86-64 processor with AVX2 (learner/blas.h). Who changes
+// what a training computes changes this, and nobody else.
 TEST(Training, GivesTheSameBitsOnEveryMachine) {
   TemporaryDirectory temporary;
   const auto run = temporary.path() / "run";
   const CommandResult result = run_command(train_command(run), kDeadline_s);
   ASSERT_EQ(result.status, 0) << result.output;
-  EXPECT_EQ(json::parse(std::ifstream(run / "learner.json")).at("blas_core"), "Haswell");
+  EXPECT_EQ(Json::parse(std::ifstream(run / "learner.json")).at("blas_core"), "Haswell");
   EXPECT_EQ(fingerprint(run), "caf0e003bbc79f39\n");
 }
 

@@ -3,7 +3,8 @@
 
 #include <filesystem>
 
-#include "proto/run_directory.h"
+#include "proto/system/files.h"
+#include "proto/system/files.h"
 #include "tests/fuzz/targets.h"
 
 namespace corridor::fuzz {

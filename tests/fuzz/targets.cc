@@ -1,16 +1,18 @@
 #include "tests/fuzz/targets.h"
 
 #include <cstring>
-#include <nlohmann/json.hpp>
 #include <string>
 
-#include "cluster/evaluation_result.h"
-#include "cluster/progress.h"
-#include "learner/checkpoint.h"
-#include "proto/codec.h"
-#include "proto/failure.h"
-#include "proto/run_config.h"
-#include "proto/tensor_file.h"
+#include "cluster/results/evaluation_result.h"
+#include "cluster/watch/line_tail.h"
+#include "cluster/watch/training_progress.h"
+#include "learner/learner_state.h"
+#include "proto/base/failure.h"
+#include "proto/base/json.h"
+#include "proto/config/run_config.h"
+#include "proto/run/metrics.h"
+#include "proto/run/tensor_file.h"
+#include "proto/wire/codec.h"
 #include "replay/replay_service.h"
 
 namespace corridor::fuzz {
@@ -103,9 +105,9 @@ void read_checkpoint(std::string_view bytes) {
 
 // What `corridor` reads of what other processes wrote.
 void read_records(std::string_view text) {
-  cluster::parse_metrics_line(text);
+  parse_metrics_line(text);
   cluster::parse_step_count(text);
-  const auto json = nlohmann::json::parse(text, nullptr, /*allow_exceptions=*/false);
+  const auto json = Json::parse(text, nullptr, /*allow_exceptions=*/false);
   if (!json.is_discarded()) read_or_fail([&] { cluster::parse_evaluation(json, "fuzz"); });
 }
 

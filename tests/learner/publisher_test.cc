@@ -5,8 +5,8 @@
 
 #include <limits>
 
-#include "proto/codec.h"
-#include "proto/failure.h"
+#include "proto/base/failure.h"
+#include "proto/wire/codec.h"
 #include "tests/learner/small_run.h"
 
 namespace corridor::learner {

@@ -6,8 +6,8 @@
 #include <future>
 #include <thread>
 
-#include "proto/codec.h"
-#include "proto/failure.h"
+#include "proto/base/failure.h"
+#include "proto/wire/codec.h"
 #include "tests/learner/small_run.h"
 
 namespace corridor::learner {

@@ -16,12 +16,12 @@
 #include <vector>
 
 #include "learner/training.h"
-#include "proto/codec.h"
-#include "proto/endpoint.h"
-#include "proto/failure.h"
-#include "proto/hash.h"
-#include "proto/random.h"
-#include "proto/run_directory.h"
+#include "proto/base/failure.h"
+#include "proto/base/hash.h"
+#include "proto/base/random.h"
+#include "proto/run/run_directory.h"
+#include "proto/wire/codec.h"
+#include "proto/wire/endpoint.h"
 #include "replay/replay_service.h"
 #include "replay/serve.h"
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "proto/failure.h"
+#include "proto/base/failure.h"
 
 namespace corridor::learner {
 namespace {

@@ -5,9 +5,9 @@
 
 #include <cmath>
 
-#include "learner/q_network.h"
 #include "learner/td_update.h"
-#include "proto/random.h"
+#include "learner/torch_q_network.h"
+#include "proto/base/random.h"
 
 namespace corridor::learner {
 namespace {

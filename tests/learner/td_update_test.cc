@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "learner/q_network.h"
 #include "learner/td_loss.h"
-#include "proto/failure.h"
-#include "proto/random.h"
+#include "learner/torch_q_network.h"
+#include "proto/base/failure.h"
+#include "proto/base/random.h"
 
 namespace corridor::learner {
 namespace {

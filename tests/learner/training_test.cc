@@ -5,11 +5,11 @@
 
 #include <cmath>
 #include <fstream>
-#include <nlohmann/json.hpp>
 
-#include "learner/q_network.h"
-#include "proto/failure.h"
-#include "proto/tensor_file.h"
+#include "learner/torch_q_network.h"
+#include "proto/base/failure.h"
+#include "proto/base/json.h"
+#include "proto/run/tensor_file.h"
 #include "tests/learner/small_run.h"
 #include "tests/support/temporary_directory.h"
 
@@ -190,7 +190,7 @@ TEST(Training, WritesMetricsWithTheSelectionsScore) {
   std::string line;
   int scores = 0;
   while (std::getline(file, line)) {
-    const nlohmann::json values = nlohmann::json::parse(line);
+    const Json values = Json::parse(line);
     if (!values.contains("eval/score")) continue;
     ++scores;
     const auto round = values["round"].get<std::uint64_t>();

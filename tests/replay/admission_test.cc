@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "proto/failure.h"
+#include "proto/base/failure.h"
 
 namespace corridor::replay {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "proto/random.h"
+#include "proto/base/random.h"
 
 namespace corridor::replay {
 namespace {

@@ -9,10 +9,10 @@
 #include <limits>
 #include <set>
 
-#include "proto/codec.h"
-#include "proto/failure.h"
-#include "proto/random.h"
-#include "proto/run_directory.h"
+#include "proto/base/failure.h"
+#include "proto/base/random.h"
+#include "proto/run/run_directory.h"
+#include "proto/wire/codec.h"
 #include "tests/replay/small_run.h"
 #include "tests/support/temporary_directory.h"
 

@@ -9,11 +9,11 @@
 #include <chrono>
 #include <filesystem>
 #include <fstream>
-#include <nlohmann/json.hpp>
 #include <thread>
 
-#include "proto/codec.h"
-#include "proto/failure.h"
+#include "proto/base/failure.h"
+#include "proto/base/json.h"
+#include "proto/wire/codec.h"
 #include "tests/replay/small_run.h"
 #include "tests/support/temporary_directory.h"
 
@@ -121,7 +121,7 @@ TEST_F(ServeTest, ClientsGetWhatTheServiceAloneWouldAnswer) {
   }
 
   std::ifstream file(directory_ / "replay.jsonl");
-  const nlohmann::json line = nlohmann::json::parse(file);
+  const Json line = Json::parse(file);
   EXPECT_EQ(line.at("round"), 31);
   EXPECT_EQ(line.at("step"), 32 * 20 * kActors);
   EXPECT_EQ(line.at("replay/size"), 150);

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <cstdint>
 
-#include "proto/messages.h"
-#include "proto/random.h"
-#include "proto/settings.h"
+#include "proto/base/random.h"
+#include "proto/settings/settings.h"
+#include "proto/wire/messages.h"
 
 namespace corridor::replay {
 

@@ -8,9 +8,9 @@
 #include <limits>
 #include <numeric>
 
-#include "proto/failure.h"
-#include "proto/messages.h"
-#include "proto/random.h"
+#include "proto/base/failure.h"
+#include "proto/base/random.h"
+#include "proto/wire/messages.h"
 #include "tests/replay/chi_square.h"
 
 namespace corridor::replay {

@@ -7,7 +7,7 @@
 #include <limits>
 #include <numeric>
 
-#include "proto/random.h"
+#include "proto/base/random.h"
 #include "tests/replay/chi_square.h"
 
 namespace corridor::replay {

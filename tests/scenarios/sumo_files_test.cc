@@ -8,9 +8,10 @@
 #include <fstream>
 #include <optional>
 
-#include "proto/failure.h"
-#include "proto/run_config.h"
-#include "proto/run_directory.h"
+#include "proto/base/failure.h"
+#include "proto/config/run_config.h"
+#include "proto/run/run_directory.h"
+#include "proto/system/files.h"
 #include "tests/support/temporary_directory.h"
 
 namespace corridor::scenarios {

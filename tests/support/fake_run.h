@@ -1,13 +1,14 @@
 // A run directory as after a training, without the training.
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <string>
 
-#include "cluster/manifest.h"
-#include "proto/metrics.h"
-#include "proto/run_config.h"
-#include "proto/run_directory.h"
+#include "cluster/launch/manifest.h"
+#include "proto/base/json.h"
+#include "proto/config/run_config.h"
+#include "proto/run/metrics.h"
+#include "proto/run/run_directory.h"
+#include "proto/system/files.h"
 
 namespace corridor::testing_support {
 
@@ -38,27 +39,26 @@ inline RunDirectory make_fake_run(const std::filesystem::path& root, const RunCo
   MetricsWriter learner(directory.metrics("learner"));
   learner.write("MoP", 7, 4096, {{"losses/td_loss", 0.25}, {"eval/reward_per_1000", 90.0}});
   for (const char* planner : {"rules", "random+rules"}) {
-    const nlohmann::json episode = {
-        {"steps", 1000},   {"bp_reward", 500.0}, {"mop_reward", 800.0},
-        {"collisions", 1}, {"lane_changes", 9},  {"hard_brakes", 2},
-        {"bypasses", 0},   {"distance_m", 1e4},  {"lane_steps", {500, 300, 200}}};
-    const nlohmann::json result = {{"planner", planner},
-                                   {"seed", 1002},
-                                   {"steps", 1000},
-                                   {"episodes", 1},
-                                   {"bp_reward_per_1000", 500.0},
-                                   {"collisions", 1},
-                                   {"collisions_by_kind",
-                                    {{"rear_ended", 1},
-                                     {"rear_ending", 0},
-                                     {"side_by_other", 0},
-                                     {"side_by_ego", 0},
-                                     {"off_road", 0}}},
-                                   {"lane_changes", 9},
-                                   {"bypasses", 0},
-                                   {"mean_speed_kph", 36.0},
-                                   {"distance_km", 10.0},
-                                   {"per_episode", {episode}}};
+    const Json episode = {{"steps", 1000},   {"bp_reward", 500.0}, {"mop_reward", 800.0},
+                          {"collisions", 1}, {"lane_changes", 9},  {"hard_brakes", 2},
+                          {"bypasses", 0},   {"distance_m", 1e4},  {"lane_steps", {500, 300, 200}}};
+    const Json result = {{"planner", planner},
+                         {"seed", 1002},
+                         {"steps", 1000},
+                         {"episodes", 1},
+                         {"bp_reward_per_1000", 500.0},
+                         {"collisions", 1},
+                         {"collisions_by_kind",
+                          {{"rear_ended", 1},
+                           {"rear_ending", 0},
+                           {"side_by_other", 0},
+                           {"side_by_ego", 0},
+                           {"off_road", 0}}},
+                         {"lane_changes", 9},
+                         {"bypasses", 0},
+                         {"mean_speed_kph", 36.0},
+                         {"distance_km", 10.0},
+                         {"per_episode", {episode}}};
     write_file(directory.evaluation() / (std::string(planner) + "_1002.json"), result.dump());
   }
   return directory;

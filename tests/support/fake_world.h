@@ -8,8 +8,8 @@
 #include "actor/driving/collision.h"
 #include "actor/driving/corridors.h"
 #include "actor/world/world.h"
-#include "proto/random.h"
-#include "proto/settings.h"
+#include "proto/base/random.h"
+#include "proto/settings/settings.h"
 
 namespace corridor::testing_support {
 

@@ -3,16 +3,16 @@
 #pragma once
 
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <string>
 
 #include "actor/episode.h"
-#include "proto/failure.h"
-#include "proto/run_directory.h"
+#include "proto/base/failure.h"
+#include "proto/base/json.h"
+#include "proto/run/run_directory.h"
 
 namespace corridor::testing_support {
 
-inline nlohmann::json record_collision(const RunConfig& config, world::World& world) {
+inline Json record_collision(const RunConfig& config, world::World& world) {
   actor::Episode episode(config, world);
   const int fastest = static_cast<int>(config.planner.speed_changes_mps.size()) - 1;
   for (std::uint64_t seed = 1; seed < 100; ++seed) {

@@ -3,8 +3,9 @@
 
 #include <filesystem>
 
-#include "proto/run_config.h"
-#include "proto/run_directory.h"
+#include "proto/config/run_config.h"
+#include "proto/run/run_directory.h"
+#include "proto/system/files.h"
 
 namespace corridor::testing_support {
 

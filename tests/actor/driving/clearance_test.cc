@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "proto/transition.h"
+#include "proto/settings/transition.h"
 #include "tests/actor/driving/scenes.h"
 
 namespace corridor::driving {

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "actor/driving/clearance.h"
-#include "proto/transition.h"
+#include "proto/settings/transition.h"
 #include "tests/actor/driving/scenes.h"
 
 namespace corridor::driving {

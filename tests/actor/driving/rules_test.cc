@@ -8,7 +8,7 @@
 #include "actor/driving/collision.h"
 #include "actor/driving/preprocessing.h"
 #include "actor/driving/trajectory.h"
-#include "proto/failure.h"
+#include "proto/base/failure.h"
 #include "tests/actor/driving/scenes.h"
 
 namespace corridor::driving {

@@ -7,8 +7,8 @@
 #include "actor/driving/corridors.h"
 #include "actor/driving/planner.h"
 #include "actor/driving/scene.h"
-#include "proto/random.h"
-#include "proto/settings.h"
+#include "proto/base/random.h"
+#include "proto/settings/settings.h"
 
 namespace corridor::driving {
 

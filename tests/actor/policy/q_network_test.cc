@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "learner/q_network.h"
-#include "proto/random.h"
+#include "learner/torch_q_network.h"
+#include "proto/base/random.h"
 
 namespace corridor::policy {
 namespace {

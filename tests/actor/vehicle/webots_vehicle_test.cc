@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "actor/vehicle/path_tracker.h"
-#include "proto/failure.h"
+#include "proto/base/failure.h"
 #include "tests/actor/vehicle/drive.h"
 
 namespace corridor::vehicle {

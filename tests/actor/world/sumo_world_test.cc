@@ -13,8 +13,8 @@
 #include <sstream>
 
 #include "actor/driving/bypass.h"
-#include "proto/failure.h"
-#include "proto/hash.h"
+#include "proto/base/failure.h"
+#include "proto/base/hash.h"
 #include "scenarios/sumo_files.h"
 #include "tests/support/temporary_directory.h"
 

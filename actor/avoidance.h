@@ -1,0 +1,73 @@
+// Hindsight: could a recorded collision have been avoided, by the last actions before it, or by any
+// reaction to what could be seen?
+//
+// The episode is driven again as recorded up to k steps before the collision. From there sequences
+// of the MoP's actions are tried, depth first, each in a copy of the process (actor/what_if.h) so
+// that the simulation is exact, until one leads past the step of the collision and is free of any
+// collision still kMarginSteps later. The search is over every sequence, but for actions that lead
+// to equal targets; the BP's commands move nothing, and corridors closed by one may be entered.
+//
+// What the verdicts mean. The search sees how the others react to what it tries, which no driver
+// can: kAvoidable is optimistic, and what is kUnavoidable bounds from below the collisions that any
+// driver with these actions would have had from there. Where the world drove, a planner takes over
+// k steps before.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "actor/driving/collision.h"
+#include "actor/driving/scene.h"
+#include "actor/escape_search.h"
+#include "actor/recorded_episode.h"
+#include "actor/world/world.h"
+#include "proto/settings/settings.h"
+
+namespace corridor::actor {
+
+inline constexpr int kMarginSteps = 4;
+// A lateral speed that can be seen: a tenth of SUMO's drivers' own.
+inline constexpr double kVisible_mps = 0.1;
+
+// The MoP's actions that lead to different targets, likely escapes first: away from the vehicle
+// that hits, then straight on, then towards it; for each the hardest braking first, or the greatest
+// acceleration where it comes from behind.
+std::vector<std::uint8_t> evasive_actions(const driving::Scene& scene,
+                                          const driving::Collision& collision,
+                                          const DrivingSettings& settings);
+
+// How many actions were chosen with the cause of the collision in sight: the length of the unbroken
+// run of observations, up to the last one before the collision, in which the vehicle that is hit
+// or hits moves towards the ego at more than kVisible_mps across the road, or is in its path (they
+// overlap across the road); where the ego itself moved sideways into it, is there at all. `seen`
+// are the observations from the episode's start to the last one before the collision.
+int actions_in_sight(std::span<const driving::Scene> seen, const driving::Collision& collision,
+                     const EgoSettings& ego);
+
+struct HindsightLimits {
+  int actions = 4;                   // the last so many, at most
+  std::int64_t attempts_max = 1000;  // for each number of actions
+};
+
+struct Hindsight {
+  driving::Collision collision;
+  int step = 0;  // of the collision: the episode's last
+  int actions_in_sight = 0;
+  // By the last 1, 2, ... actions, up to the first that is avoidable, to the limit, or to the
+  // episode's start. At least one.
+  std::vector<EscapeSearch> searches;
+
+  // By the last so many actions (at least 1). What fewer could avoid, more could.
+  Verdict by_last(int actions) const;
+  // By the actions chosen with the cause in sight: with none, kUnavoidable; with more than were
+  // searched, kUndecided unless those that were searched could.
+  Verdict by_reacting() const;
+};
+
+// Throws Failure when the episode has no collision or does not drive again as recorded. Equal
+// arguments give equal results. When stop_requested(), they are incomplete.
+Hindsight look_back(const RunConfig& config, const RecordedEpisode& recorded, world::World& world,
+                    const HindsightLimits& limits);
+
+}  // namespace corridor::actor

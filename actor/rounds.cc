@@ -1,0 +1,204 @@
+#include "actor/rounds.h"
+
+#include <algorithm>
+#include <chrono>
+#include <optional>
+#include <thread>
+
+#include "actor/rollout.h"
+#include "proto/base/failure.h"
+#include "proto/base/random.h"
+#include "proto/run/metrics.h"
+#include "proto/settings/schedule.h"
+#include "proto/system/log.h"
+#include "proto/system/program.h"
+#include "proto/wire/codec.h"
+#include "proto/wire/connect.h"
+#include "proto/wire/endpoint.h"
+
+namespace corridor::actor {
+namespace {
+
+// How long one look at a socket may last before the stop flag is looked at.
+constexpr Duration kPatience{100};
+// Steps of the phase, all actors together, between two lines of metrics.
+constexpr std::int64_t kStepsPerMetricsLine = 4000;
+
+// The next answer; nothing when the process is asked to stop first.
+std::optional<Body> answer(Client& client) {
+  while (!stop_requested()) {
+    if (auto body = client.receive(kPatience)) return body;
+  }
+  return std::nullopt;
+}
+
+class Trainer {
+ public:
+  Trainer(const RunConfig& config, const RunDirectory& directory, int actor, world::World& world,
+          TimeAccount& time)
+      : config_(config),
+        actor_(actor),
+        world_(world),
+        time_(time),
+        schedule_(config),
+        metrics_(directory.metrics(fmt::format("actor-{}", actor))),
+        replay_(make_client(directory, true)),
+        learner_(make_client(directory, false)) {}
+
+  void run() {
+    replay_.send(encode(ReplayRequest(Join{})));
+    const auto body = answer(replay_);
+    if (!body) return;
+    const auto joined = expect<Joined>(decode_replay_reply(*body), "replay server");
+    log_info("joins at round {} of {}", joined.next_round, schedule_.rounds());
+    OpenEpisode open = joined.open;
+    for (std::uint64_t round = joined.next_round; round < schedule_.rounds(); ++round) {
+      if (!rollout_ || rollout_->phase() != schedule_.phase_of(round)) {
+        rollout_.emplace(config_, actor_, world_, time_, round, open);
+        open = {};
+      }
+      if (!drive_round(round)) return;
+    }
+    drain(replay_);
+    drain(learner_);
+  }
+
+ private:
+  Client make_client(const RunDirectory& directory, bool replay) const {
+    const std::string run_id = read_manifest(directory).run_id;
+    const Addresses where = addresses(config_.run, run_id);
+    const auto started = std::chrono::system_clock::now().time_since_epoch();
+    ClientLimits limits;
+    limits.peer_timeout = Duration(static_cast<std::int64_t>(config_.run.peer_timeout_s * 1000.0));
+    return Client(replay ? where.replay : where.learner, replay ? "replay server" : "learner",
+                  {run_id, Role::kActor, static_cast<std::uint32_t>(actor_),
+                   static_cast<std::uint64_t>(
+                       std::chrono::duration_cast<std::chrono::nanoseconds>(started).count())},
+                  limits);
+  }
+
+  // False when the process is asked to stop.
+  bool drive_round(std::uint64_t round) {
+    if (!fetch_weights(schedule_.weights_version(round))) return false;
+    if (schedule_.selects_in(round)) {
+      learner_.send(encode(LearnerRequest(rollout_->select(weights_))));
+      // Noted before the round's chunk goes out: where the chunk is known, so is the outcome.
+      const auto body = answer(learner_);
+      if (!body) return false;
+      expect<Noted>(decode_learner_reply(*body), "learner");
+      time_.charge(TimePart::kWaitForLearner);
+    }
+    ask_for_weights_of(round + 1);
+    time_.charge(TimePart::kTransport);
+    const Insert chunk = rollout_->drive_round(weights_);
+    delay(round);
+
+    // One chunk may be under way while the next is driven, not two.
+    const Body body = encode(ReplayRequest(chunk));
+    time_.charge(TimePart::kTransport);
+    if (!drain(replay_)) return false;
+    time_.charge(TimePart::kWaitForReplay);
+    replay_.send(body);
+    report(round);
+    return true;
+  }
+
+  // The weights of the next round are asked for while this one is driven: they arrive meanwhile.
+  void ask_for_weights_of(std::uint64_t round) {
+    if (round >= schedule_.rounds()) return;
+    const std::uint64_t version = schedule_.weights_version(round);
+    if (asked_ == version) return;
+    learner_.send(encode(LearnerRequest(WeightsWanted{version})));
+    asked_ = version;
+  }
+
+  bool fetch_weights(std::uint64_t version) {
+    if (asked_ != version) {
+      learner_.send(encode(LearnerRequest(WeightsWanted{version})));
+      asked_ = version;
+    }
+    time_.charge(TimePart::kTransport);
+    if (have_ != version) {
+      const auto body = answer(learner_);
+      if (!body) return false;
+      time_.charge(TimePart::kWaitForLearner);
+      weights_ = expect<Weights>(decode_learner_reply(*body), "learner");
+      check_weights();
+      have_ = version;
+    }
+    return true;
+  }
+
+  void check_weights() const {
+    if (weights_.version != asked_ || weights_.mop.size() != config_.parameters(Phase::kMop) ||
+        weights_.bp.size() != config_.parameters(Phase::kBp)) {
+      throw Failure(
+          "the learner sent weights of version {} with {} and {} parameters, which are "
+          "not those asked for: is it of another configuration?",
+          weights_.version, weights_.mop.size(), weights_.bp.size());
+    }
+  }
+
+  static bool drain(Client& client) {
+    while (client.unanswered() > 0) {
+      if (!answer(client)) return false;
+    }
+    return true;
+  }
+
+  void delay(std::uint64_t round) const {
+    if (config_.run.delay_ms_max <= 0.0) return;
+    const double share = random_unit(config_.run.seed, Purpose::kWireDelay,
+                                     {static_cast<std::uint64_t>(actor_) + 10, round});
+    std::this_thread::sleep_for(
+        std::chrono::duration<double, std::milli>(share * config_.run.delay_ms_max));
+  }
+
+  void report(std::uint64_t round) {
+    const std::int64_t lines_apart =
+        std::max<std::int64_t>(1, kStepsPerMetricsLine / schedule_.steps_per_round());
+    const bool last = round + 1 == schedule_.rounds() ||
+                      schedule_.phase_of(round + 1) != schedule_.phase_of(round);
+    if (static_cast<std::int64_t>(round + 1) % lines_apart != 0 && !last) return;
+    const RolloutTotals totals = rollout_->take_totals();
+    const auto steps = static_cast<double>(std::max<std::int64_t>(totals.steps, 1));
+    std::vector<std::pair<std::string, double>> values = {
+        {"charts/SPS", steps / time_.wall_s()},
+        {"charts/reward_per_1000", 1000.0 * totals.reward / steps},
+        {"charts/collisions_per_1000", 1000.0 * static_cast<double>(totals.collisions) / steps},
+        {"charts/epsilon", totals.epsilon}};
+    for (auto& value : time_.take()) values.push_back(std::move(value));
+    if (totals.episodes > 0) {
+      const auto episodes = static_cast<double>(totals.episodes);
+      values.emplace_back("charts/episodic_return", totals.episodic_return / episodes);
+      values.emplace_back("charts/episodes", episodes);
+    }
+    const Phase phase = schedule_.phase_of(round);
+    const std::int64_t phase_steps =
+        schedule_.phase_steps_before(round) + schedule_.steps_per_round();
+    metrics_.write(phase_name(phase), round, phase_steps, values);
+  }
+
+  const RunConfig& config_;
+  int actor_;
+  world::World& world_;
+  TimeAccount& time_;
+  Schedule schedule_;
+  MetricsWriter metrics_;
+  Client replay_;
+  Client learner_;
+  std::optional<PhaseRollout> rollout_;
+
+  Weights weights_;
+  std::optional<std::uint64_t> have_;   // version of weights_
+  std::optional<std::uint64_t> asked_;  // the latest version asked for
+};
+
+}  // namespace
+
+void train(const RunConfig& config, const RunDirectory& directory, int actor, world::World& world,
+           TimeAccount& time) {
+  Trainer(config, directory, actor, world, time).run();
+}
+
+}  // namespace corridor::actor

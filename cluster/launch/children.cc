@@ -1,0 +1,186 @@
+#include "cluster/launch/children.h"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <signal.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <utility>
+
+#include "proto/base/failure.h"
+
+namespace corridor::cluster {
+namespace {
+
+constexpr int kFailureStatus = 1;  // proto/system/program.h
+// For a process to become its program, or to say why it cannot.
+constexpr int kExecPatience_ms = 2000;
+
+std::vector<std::string> environment_of(const Pulse& pulse) {
+  // The processes share the cores already: threads of their own would only get in each other's way.
+  std::vector<std::string> result = {"OMP_NUM_THREADS=1", "OPENBLAS_NUM_THREADS=1",
+                                     pulse.environment()};
+  for (char** entry = environ; *entry != nullptr; ++entry) {
+    const std::string_view text = *entry;
+    if (!text.starts_with("OMP_NUM_THREADS=") && !text.starts_with("OPENBLAS_NUM_THREADS=")) {
+      result.emplace_back(text);
+    }
+  }
+  return result;
+}
+
+std::vector<char*> pointers(std::vector<std::string>& texts) {
+  std::vector<char*> result;
+  for (std::string& text : texts) result.push_back(text.data());
+  result.push_back(nullptr);
+  return result;
+}
+
+// Between fork and exec: calls only what is safe there. Does not return.
+[[noreturn]] void become(char* const* argv, char* const* environment, int log, int errors,
+                         int pulse, pid_t parent) {
+  setpgid(0, 0);
+  // A run can be resumed after anything: nothing need be asked of those whose starter died.
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (getppid() != parent) _exit(1);  // it died before prctl
+  sigset_t none;
+  sigemptyset(&none);
+  sigprocmask(SIG_SETMASK, &none, nullptr);
+  fcntl(pulse, F_SETFD, 0);
+  const int null = open("/dev/null", O_RDONLY);
+  dup2(null, STDIN_FILENO);
+  dup2(log, STDOUT_FILENO);
+  dup2(log, STDERR_FILENO);
+  execve(argv[0], argv, environment);
+  const int error = errno;
+  // Nobody is left to tell when this fails.
+  if (write(errors, &error, sizeof error) < 0) _exit(126);
+  _exit(127);
+}
+
+// ": <the last line that names an error>" of what the process wrote; when there is none and it
+// ended by itself, the last line.
+std::string last_words(const Ended& ended) {
+  std::ifstream log(ended.log);
+  log.seekg(static_cast<std::streamoff>(ended.log_start));
+  std::string last, error;
+  for (std::string line; std::getline(log, line);) {
+    if (line.find("error") != std::string::npos) error = line;
+    if (!line.empty()) last = line;
+  }
+  if (!error.empty()) return ": " + error;
+  if (WIFSIGNALED(ended.status)) return "";
+  return last.empty() ? ": it wrote nothing" : ": its last line: " + last;
+}
+
+}  // namespace
+
+void Children::start(const ProcessPlan& plan) {
+  Pulse pulse;
+  std::vector<std::string> arguments = plan.argv;
+  std::vector<std::string> environment = environment_of(pulse);
+  const std::vector<char*> argv = pointers(arguments);
+  const std::vector<char*> envp = pointers(environment);
+
+  const int log = open(plan.log.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
+  if (log < 0) throw Failure("cannot write {}: {}", plan.log.string(), std::strerror(errno));
+  const off_t log_start = lseek(log, 0, SEEK_END);
+  // Closed by a successful exec, so that its failure is known here, with the reason.
+  int errors[2];
+  if (pipe2(errors, O_CLOEXEC) != 0) {
+    const int error = errno;
+    close(log);
+    throw Failure("cannot start {}: {}", plan.name, std::strerror(error));
+  }
+  const pid_t parent = getpid();
+  const pid_t pid = fork();
+  if (pid == 0) become(argv.data(), envp.data(), log, errors[1], pulse.descriptor(), parent);
+  int error = pid < 0 ? errno : 0;
+  close(log);
+  close(errors[1]);
+  if (pid > 0) {
+    setpgid(pid, pid);  // here as well: whoever comes first
+    running_.push_back({plan.name, plan.log, static_cast<std::uintmax_t>(log_start), pid,
+                        std::move(pulse), 0, Clock::now(), false});
+    // One that is stopped before it has become the program says nothing, and is found as hung.
+    pollfd said{errors[0], POLLIN, 0};
+    const bool over = poll(&said, 1, kExecPatience_ms) > 0;
+    if (over && read(errors[0], &error, sizeof error) < 0) error = errno;
+  }
+  close(errors[0]);
+  if (error != 0) {
+    throw Failure("cannot start {}: {}: {}; is the build complete?", plan.name, plan.argv[0],
+                  std::strerror(error));
+  }
+}
+
+std::optional<Ended> Children::reap() {
+  for (auto child = running_.begin(); child != running_.end(); ++child) {
+    siginfo_t info{};
+    const auto id = static_cast<id_t>(child->pid);
+    if (waitid(P_PID, id, &info, WEXITED | WNOHANG | WNOWAIT) != 0 || info.si_pid == 0) continue;
+    // Before the process is reaped: its id cannot have been given to another group yet.
+    kill(-child->pid, SIGKILL);
+    Ended ended{child->name, child->log, child->log_start, 0, child->hung};
+    waitpid(child->pid, &ended.status, WNOHANG);
+    running_.erase(child);
+    return ended;
+  }
+  return std::nullopt;
+}
+
+void Children::signal(int signal, const std::string& only) {
+  for (const Child& child : running_) {
+    if (only.empty() || child.name == only) kill(-child.pid, signal);
+  }
+}
+
+void Children::kill_hung(std::chrono::milliseconds silence) {
+  const Clock::time_point now = Clock::now();
+  for (Child& child : running_) {
+    const std::uint64_t beats = child.pulse.beats();
+    if (beats != std::exchange(child.beats, beats)) child.alive_at = now;
+    if (now - child.alive_at < silence) continue;
+    child.hung = true;
+    kill(-child.pid, SIGKILL);
+  }
+}
+
+void Children::kill_all() {
+  signal(SIGKILL);
+  // The kernel ends them within moments; the deadline is for one stuck in a broken device.
+  const auto deadline = Clock::now() + std::chrono::seconds(2);
+  while (!running_.empty() && Clock::now() < deadline) {
+    if (!reap()) poll(nullptr, 0, 1);
+  }
+  running_.clear();
+}
+
+bool Children::has(const std::string& name) const {
+  return std::any_of(running_.begin(), running_.end(),
+                     [&](const Child& child) { return child.name == name; });
+}
+
+bool Ended::well() const { return WIFEXITED(status) && WEXITSTATUS(status) == 0; }
+
+bool Ended::knows_why() const { return WIFEXITED(status) && WEXITSTATUS(status) == kFailureStatus; }
+
+std::string Ended::cause() const {
+  std::string how;
+  if (hung) {
+    how = "was killed, since it hung";
+  } else if (WIFSIGNALED(status)) {
+    how = fmt::format("ended with signal {} ({})", WTERMSIG(status), strsignal(WTERMSIG(status)));
+  } else {
+    how = fmt::format("ended with status {}", WEXITSTATUS(status));
+  }
+  return fmt::format("{} {}{}; log: {}", name, how, last_words(*this), log.string());
+}
+
+}  // namespace corridor::cluster

@@ -1,0 +1,70 @@
+// Processes on this machine: start, watch, stop. Nothing that is started here outlives its
+// starter: not after an error, a signal or a crash of either.
+//
+// One thread; while a run_... function goes on, SIGINT, SIGTERM, SIGHUP and SIGCHLD are blocked and
+// read from a descriptor, so no wait is longer than `Limits` say and none is missed.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "cluster/launch/children.h"
+#include "cluster/launch/plan.h"
+
+namespace corridor::cluster {
+
+// Cores that this process may use.
+int available_cores();
+
+using Milliseconds = std::chrono::milliseconds;
+
+struct Limits {
+  Milliseconds tick{200};         // between two calls of `tick`, at most
+  Milliseconds checkpoint{3500};  // for the learner to end once asked to
+  Milliseconds others{1000};      // for the others, after it, when a signal or failure ends all
+  Milliseconds after_work{3000};  // for the others, when the work is done
+  // A repeated signal kills at once, but not within this time: `timeout` and shells send the
+  // same one to the process and then to its group.
+  Milliseconds repeated_signal{300};
+  Milliseconds hung{20'000};  // a process without a sign of life for so long is killed
+  int deaths = 5;             // of one process, without progress in between: too many
+};
+
+// How the processes came to their end, when not by a failure.
+struct Ending {
+  int signal = 0;  // that stopped them early; 0: the work is done
+};
+
+// What run_together tells and asks. All of it is called from its waiting loop; what it throws ends
+// all processes.
+struct Supervision {
+  // Now and then.
+  std::function<void()> tick = [] {};
+  // Grows as the work advances.
+  std::function<std::uint64_t()> progress = [] { return std::uint64_t{0}; };
+  // A process has died and will be started again: by itself, or all of them anew, none being left.
+  std::function<void(const Ended& ended, bool all)> died = [](const Ended&, bool) {};
+};
+
+// Starts the plan's processes and waits until `main_process` has ended with status 0, then ends the
+// others. A stop signal ends `main_process` first, then the others.
+//
+// A process that dies or hangs before that is started again: by itself when it is replaceable, else
+// all are ended and started anew. One that ends by itself with a line that says why (status 1) ends
+// all: throws Failure with its name, that line and its log; also when one dies again and again, or
+// cannot be started.
+Ending run_together(const std::vector<ProcessPlan>& plan, const std::string& main_process,
+                    const Limits& limits, const Supervision& supervision);
+
+// Runs every process of the plan, at most `jobs` at a time, in order. One that ends
+// with another status than 0 ends all: throws Failure with its name, last error line and log.
+Ending run_queue(const std::vector<ProcessPlan>& plan, int jobs, const Limits& limits,
+                 const std::function<void()>& tick);
+
+// The directory of the running program: the others lie beside it.
+std::filesystem::path program_directory();
+
+}  // namespace corridor::cluster

@@ -1,0 +1,122 @@
+#include "cluster/launch/manifest.h"
+
+#include <sys/random.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <ctime>
+#include <fstream>
+#include <memory>
+#include <span>
+#include <thread>
+
+#include "proto/base/failure.h"
+#include "proto/base/json.h"
+#include "proto/config/run_config.h"
+#include "proto/run/run_directory.h"
+#include "proto/system/files.h"
+#include "proto/system/program.h"
+
+namespace corridor::cluster {
+namespace {
+
+constexpr const char* kUnknown = "unknown";
+
+std::string utc_now() {
+  const std::time_t now = std::time(nullptr);
+  std::tm parts{};
+  gmtime_r(&now, &parts);
+  std::array<char, 32> text{};
+  std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &parts);
+  return text.data();
+}
+
+std::string host_name() {
+  std::array<char, 256> name{};
+  return gethostname(name.data(), name.size() - 1) == 0 ? name.data() : kUnknown;
+}
+
+std::string cpu_model() {
+  std::ifstream info("/proc/cpuinfo");
+  for (std::string line; std::getline(info, line);) {
+    if (!line.starts_with("model name")) continue;
+    const std::size_t value = line.find(": ");
+    if (value != std::string::npos) return line.substr(value + 2);
+  }
+  return kUnknown;
+}
+
+// "Eclipse SUMO netconvert Version 1.15.0": the tool that has just made the network.
+std::string sumo_version() {
+  const std::unique_ptr<FILE, int (*)(FILE*)> pipe(popen("netconvert --version 2>/dev/null", "re"),
+                                                   pclose);
+  std::array<char, 256> line{};
+  if (!pipe || std::fgets(line.data(), line.size(), pipe.get()) == nullptr) return kUnknown;
+  const std::string text = line.data();
+  const std::size_t at = text.rfind("Version ");
+  if (at == std::string::npos) return kUnknown;
+  const std::size_t start = at + std::strlen("Version ");
+  return text.substr(start, text.find_first_of(" \n", start) - start);
+}
+
+// Which library Debian's alternatives have the learner load.
+std::string blas_library() {
+  std::error_code missing;
+  const auto library = std::filesystem::canonical(CORRIDOR_BLAS_LINK, missing);
+  return missing ? kUnknown : library.string();
+}
+
+}  // namespace
+
+std::string draw_run_id() {
+  std::array<unsigned char, 16> bytes{};
+  if (getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size())) {
+    throw Failure("cannot draw a run id: {}", std::strerror(errno));
+  }
+  std::string text;
+  for (const unsigned char byte : bytes) text += fmt::format("{:02x}", byte);
+  return text;
+}
+
+OrderedJson describe_run(const std::string& run_id, const RunConfig& config,
+                         const std::filesystem::path& scenario) {
+  return {{"run_id", run_id},
+          {"seed", config.run.seed},
+          {"scenario", std::filesystem::absolute(scenario).string()},
+          {"started", utc_now()},
+          {"host", host_name()},
+          {"cpu", cpu_model()},
+          {"cores", std::thread::hardware_concurrency()},
+          {"versions",
+           {{"corridor", kVersion},
+            {"git_commit", CORRIDOR_GIT_COMMIT},
+            {"sumo", sumo_version()},
+            {"libtorch", CORRIDOR_TORCH_VERSION},
+            {"blas", blas_library()},
+            {"compiler", CORRIDOR_COMPILER}}},
+          {"config", to_toml(config)}};
+}
+
+RunConfig config_at_start(const RunDirectory& directory) {
+  const std::string file = directory.manifest().string();
+  const Json manifest = read_json(file);
+  if (!manifest.is_object() || !manifest.contains("config") || !manifest["config"].is_string()) {
+    throw Failure("{} is damaged: it does not say with which settings the run began", file);
+  }
+  return parse_run_config(manifest["config"].get<std::string>(), file);
+}
+
+std::string scenario_name(const RunDirectory& directory) {
+  const std::string file = directory.manifest().string();
+  const auto manifest = Json::parse(read_file(file), nullptr, false);
+  if (!manifest.is_object() || !manifest.contains("scenario") ||
+      !manifest["scenario"].is_string()) {
+    throw Failure("{} is damaged: it does not say of which scenario the run is", file);
+  }
+  return std::filesystem::path(manifest["scenario"].get<std::string>()).stem();
+}
+
+}  // namespace corridor::cluster

@@ -1,0 +1,74 @@
+#include "cluster/launch/run_lock.h"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <signal.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <sstream>
+#include <string>
+
+#include "proto/base/failure.h"
+#include "proto/system/program.h"
+
+namespace corridor::cluster {
+namespace {
+
+std::string host_name() {
+  std::array<char, 256> name{};
+  gethostname(name.data(), name.size() - 1);
+  return name.data();
+}
+
+// What the lock file says: "<pid> <host>".
+struct Owner {
+  pid_t pid = 0;
+  std::string host;
+
+  bool gone() const { return host == host_name() && kill(pid, 0) != 0 && errno == ESRCH; }
+};
+
+Owner read_owner(int descriptor) {
+  std::array<char, 512> text{};
+  Owner owner;
+  if (pread(descriptor, text.data(), text.size() - 1, 0) > 0) {
+    std::istringstream(text.data()) >> owner.pid >> owner.host;
+  }
+  return owner;
+}
+
+}  // namespace
+
+RunLock::RunLock(const RunDirectory& directory, std::chrono::milliseconds patience) {
+  const std::filesystem::path file = directory.root() / "lock";
+  // Not close-on-exec: the run's processes are to hold it too.
+  descriptor_ = open(file.c_str(), O_RDWR | O_CREAT, 0644);
+  if (descriptor_ < 0) throw Failure("cannot open {}: {}", file.string(), std::strerror(errno));
+  const auto deadline = std::chrono::steady_clock::now() + patience;
+  while (flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
+    const Owner owner = read_owner(descriptor_);
+    if (owner.gone() && std::chrono::steady_clock::now() < deadline && !stop_requested()) {
+      poll(nullptr, 0, 50);
+      continue;
+    }
+    close(descriptor_);
+    throw Failure("{} is going on: process {} on {} runs it{}", directory.root().string(),
+                  owner.pid, owner.host,
+                  owner.gone() ? " (it is gone, but processes that it started still live)" : "");
+  }
+  const std::string text = fmt::format("{} {}\n", getpid(), host_name());
+  if (ftruncate(descriptor_, 0) != 0 ||
+      pwrite(descriptor_, text.data(), text.size(), 0) != static_cast<ssize_t>(text.size())) {
+    const int error = errno;
+    close(descriptor_);
+    throw Failure("cannot write {}: {}", file.string(), std::strerror(error));
+  }
+}
+
+RunLock::~RunLock() { close(descriptor_); }
+
+}  // namespace corridor::cluster

@@ -1,0 +1,28 @@
+// One launcher a run: `train` and `resume` hold the run's lock as long as any of its processes
+// lives.
+#pragma once
+
+#include <chrono>
+#include <filesystem>
+
+#include "proto/run/run_directory.h"
+
+namespace corridor::cluster {
+
+// An flock on <run>/lock, which says who holds it. The child processes inherit it: the run of a
+// launcher that was killed stays locked until the last of them has ended too.
+class RunLock {
+ public:
+  // Throws Failure naming the owner when the run is going on. Where the owner is gone already, its
+  // processes get until `patience` is over to end.
+  explicit RunLock(const RunDirectory& directory,
+                   std::chrono::milliseconds patience = std::chrono::seconds(10));
+  ~RunLock();
+  RunLock(const RunLock&) = delete;
+  RunLock& operator=(const RunLock&) = delete;
+
+ private:
+  int descriptor_ = -1;
+};
+
+}  // namespace corridor::cluster

@@ -1,0 +1,151 @@
+#include "cluster/pictures/figures.h"
+
+#include <algorithm>
+#include <set>
+
+#include "proto/base/format.h"
+#include "proto/base/text.h"
+
+namespace corridor::cluster {
+namespace {
+
+constexpr int kPanelWidth = 380, kHeight = 350;  // pixels
+
+const char* colour(std::size_t curve) { return kColours[curve % kColours.size()]; }
+
+// The steps of one panel's curves as data blocks, in thousands.
+std::string data_blocks(const Panel& panel, std::size_t number) {
+  std::string text;
+  for (std::size_t i = 0; i < panel.curves.size(); ++i) {
+    text += fmt::format("$raw_{}_{} << EOD\n", number, i);
+    for (const CurvePoint& point : panel.curves[i].raw) {
+      text += fmt::format("{} {:.6g}\n", static_cast<double>(point.step) / 1000.0, point.value);
+    }
+    text += fmt::format("EOD\n$trend_{}_{} << EOD\n", number, i);
+    for (const BandPoint& point : panel.curves[i].trend) {
+      text += fmt::format("{} {:.6g} {:.6g} {:.6g}\n", static_cast<double>(point.step) / 1000.0,
+                          point.mean, point.low, point.high);
+    }
+    text += "EOD\n";
+  }
+  return text;
+}
+
+bool has_band(const Band& band) {
+  return std::any_of(band.begin(), band.end(),
+                     [](const BandPoint& point) { return point.low < point.high; });
+}
+
+// Of one curve its lines are named, of several the curves: the caption says what the lines are.
+std::string legend(const Figure& figure, std::size_t curve, const std::string& line) {
+  if (figure.labels.size() == 1) return line;
+  if (line == figure.trend) return figure.labels[curve];
+  return line == figure.level ? figure.labels[curve] + ", " + line : "";
+}
+
+// What is plotted, and what the legend says of it.
+struct Plot {
+  std::string data;   // with `using`; a number for a horizontal line
+  std::string style;  // from `with` on
+  std::string title;  // empty: the legend does not say it
+};
+
+// Bands lie lowest, then the thin lines, then the thick ones.
+std::vector<Plot> plots_of(const Figure& figure, const Panel& panel, std::size_t number) {
+  std::vector<Plot> bands, raw, trends, levels;
+  for (std::size_t i = 0; i < panel.curves.size(); ++i) {
+    const PlottedCurve& curve = panel.curves[i];
+    const std::string trend = fmt::format("$trend_{}_{}", number, i);
+    if (has_band(curve.trend)) {
+      bands.push_back(
+          {trend + " using 1:3:4",
+           fmt::format("filledcurves fc rgb '#{}' fs transparent solid 0.25 noborder", colour(i)),
+           legend(figure, i, "lowest to highest")});
+    }
+    if (!curve.raw.empty()) {
+      raw.push_back({fmt::format("$raw_{}_{} using 1:2", number, i),
+                     fmt::format("lines lw 0.7 lc rgb '#a0{}'", colour(i)),
+                     legend(figure, i, "as measured")});
+    }
+    if (!curve.trend.empty()) {
+      trends.push_back({trend + " using 1:2",
+                        fmt::format("{} lw 2.2 lc rgb '#{}'",
+                                    figure.points ? "linespoints pt 7 ps 0.6" : "lines", colour(i)),
+                        legend(figure, i, figure.trend)});
+    }
+    if (curve.level) {
+      levels.push_back({fmt::format("{:.6g}", *curve.level),
+                        fmt::format("lines lw 1.6 dt (8,5) lc rgb '#{}'",
+                                    figure.labels.size() == 1 ? kInk : colour(i)),
+                        legend(figure, i, figure.level)});
+    }
+  }
+  std::vector<Plot> plots;
+  for (const auto& layer : {bands, raw, trends, levels}) {
+    plots.insert(plots.end(), layer.begin(), layer.end());
+  }
+  return plots;
+}
+
+std::string plot_command(const std::vector<std::string>& items) {
+  return fmt::format("plot {}\n", listed(items, ", \\\n  "));
+}
+
+std::string panel_script(const Figure& figure, std::size_t number) {
+  const Panel& panel = figure.panels[number];
+  std::vector<std::string> items;
+  for (const Plot& plot : plots_of(figure, panel, number)) {
+    items.push_back(plot.data + " with " + plot.style + " notitle");
+  }
+  return fmt::format("set title {} textcolor rgb '#{}'\n", literal(panel.title), kInk) +
+         fmt::format("set ylabel {} textcolor rgb '#{}' offset 0.5,0\n", literal(panel.unit),
+                     kInk) +
+         plot_command(items);
+}
+
+// A plot of nothing over the whole width: a panel's own legend would be as wide as the panel. What
+// would only say that there is one line is left out.
+std::string legend_script(const Figure& figure) {
+  std::vector<std::string> items;
+  std::set<std::string> titles;
+  for (std::size_t i = 0; i < figure.panels.size(); ++i) {
+    for (const Plot& plot : plots_of(figure, figure.panels[i], i)) {
+      if (plot.title.empty() || !titles.insert(plot.title).second) continue;
+      items.push_back("NaN with " + plot.style + " title " + literal(plot.title));
+    }
+  }
+  if (items.size() < 2) return "";
+  return "set lmargin at screen 0\nset rmargin at screen 1\n"
+         "set bmargin at screen 0\nset tmargin at screen 0.1\n"
+         "unset border\nunset tics\nunset grid\nunset title\nunset xlabel\nunset ylabel\n"
+         "set xrange [0:1]\nset yrange [0:1]\n" +
+         fmt::format(
+             "set key center center horizontal Left reverse samplen 2.5 textcolor rgb '#{}'\n",
+             kInk) +
+         plot_command(items);
+}
+
+}  // namespace
+
+std::string gnuplot_script(const Figure& figure, PictureFormat format) {
+  const int width = kPanelWidth * static_cast<int>(figure.panels.size());
+  std::string script = terminal_script(figure.name, width, kHeight, format);
+  for (std::size_t i = 0; i < figure.panels.size(); ++i) {
+    script += data_blocks(figure.panels[i], i);
+  }
+  const auto panels = static_cast<double>(figure.panels.size());
+  script += fmt::format(
+      "set termoption noenhanced\n"
+      "set border 3 lc rgb '#{0}'\n"
+      "set tics nomirror out scale 0.6 textcolor rgb '#{0}'\n"
+      "set grid ytics lt 1 lc rgb '#e4e4e4' lw 0.7\n"
+      "set xlabel 'environment steps, thousands' textcolor rgb '#{0}'\n"
+      "set xrange [0:*] noextend\n"
+      "set yrange [*<0:*]\n"
+      "set multiplot layout 1,{1} margins {2:.4f},{3:.4f},0.29,0.88 spacing {4:.4f},0\n",
+      kInk, figure.panels.size(), 0.24 / panels, 1.0 - 0.06 / panels, 0.28 / panels);
+  for (std::size_t i = 0; i < figure.panels.size(); ++i) script += panel_script(figure, i);
+  return script + legend_script(figure) + "unset multiplot\n";
+}
+
+}  // namespace corridor::cluster

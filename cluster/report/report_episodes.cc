@@ -1,0 +1,101 @@
+#include "cluster/report/report_episodes.h"
+
+#include <algorithm>
+#include <chrono>
+#include <tuple>
+
+#include "cluster/launch/traced_episode.h"
+#include "proto/base/failure.h"
+#include "proto/base/format.h"
+#include "proto/run/run_directory.h"
+#include "proto/settings/planner_pairs.h"
+
+namespace corridor::cluster {
+namespace {
+
+// Where a run was evaluated in traffic as in its training.
+struct Evaluated {
+  RunDirectory directory;
+  std::vector<EvaluationResult> results;
+};
+
+std::optional<Evaluated> evaluated_as_trained(const std::vector<RunGroup>& groups) {
+  for (const RunGroup& group : groups) {
+    for (const RunRecord& run : group.runs) {
+      for (const auto& [world, results] : run.evaluations) {
+        if (!run.worlds_of_training.contains(world) || results.empty()) continue;
+        return Evaluated{RunDirectory::open(run.driven_in(world)), results};
+      }
+    }
+  }
+  return std::nullopt;
+}
+
+EpisodeTrace drive_again(const RunDirectory& directory, const std::string& name) {
+  const std::filesystem::path file = directory.episodes() / (name + ".json");
+  return traced_by_actor(directory, {"--trace", file.string()}, std::chrono::minutes(1));
+}
+
+}  // namespace
+
+std::string ChosenEpisode::name() const { return fmt::format("{}_{}_{}", planner, seed, index); }
+
+std::optional<ChosenEpisode> typical_episode(const std::vector<EvaluationResult>& of_planner) {
+  std::int64_t longest = 0;
+  for (const EvaluationResult& result : of_planner) {
+    for (const EpisodeResult& episode : result.per_episode)
+      longest = std::max(longest, episode.steps);
+  }
+  std::vector<std::tuple<double, std::uint64_t, std::size_t>> whole;
+  for (const EvaluationResult& result : of_planner) {
+    for (std::size_t i = 0; i < result.per_episode.size(); ++i) {
+      const EpisodeResult& episode = result.per_episode[i];
+      if (episode.collisions == 0 && episode.steps == longest)
+        whole.emplace_back(episode.bp_reward, result.seed, i);
+    }
+  }
+  if (whole.empty()) return std::nullopt;
+  std::ranges::sort(whole);
+  const auto& [reward, seed, index] = whole[whole.size() / 2];
+  return ChosenEpisode{of_planner.front().planner, seed, index};
+}
+
+std::optional<ChosenEpisode> failed_episode(const std::vector<EvaluationResult>& of_planner) {
+  for (const EvaluationResult& result : of_planner) {
+    for (std::size_t i = 0; i < result.per_episode.size(); ++i) {
+      const EpisodeResult& episode = result.per_episode[i];
+      if (episode.collisions > 0 && episode.steps >= static_cast<std::int64_t>(kShownInstants))
+        return ChosenEpisode{result.planner, result.seed, i};
+    }
+  }
+  return std::nullopt;
+}
+
+ReportedEpisodes report_episodes(const std::vector<RunGroup>& groups) {
+  ReportedEpisodes reported;
+  const std::optional<Evaluated> evaluated = evaluated_as_trained(groups);
+  if (!evaluated) return reported;
+  const auto driven = [&](const std::optional<ChosenEpisode>& chosen) {
+    std::optional<DrivenEpisode> episode;
+    if (!chosen) return episode;
+    try {
+      episode = {chosen->name(), drive_again(evaluated->directory, chosen->name())};
+    } catch (const Failure& failure) {
+      reported.notes.push_back(fmt::format("no picture of {}: {}", chosen->name(), failure.what()));
+    }
+    return episode;
+  };
+  for (const PlannerPair& pair : kPlannerPairs) {
+    std::vector<EvaluationResult> of_planner;
+    for (const EvaluationResult& result : evaluated->results) {
+      if (result.planner == pair.name) of_planner.push_back(result);
+    }
+    if (of_planner.empty()) continue;
+    EpisodeFigure figure{pair.name, driven(typical_episode(of_planner)),
+                         driven(failed_episode(of_planner))};
+    if (figure.typical || figure.failed) reported.figures.push_back(std::move(figure));
+  }
+  return reported;
+}
+
+}  // namespace corridor::cluster

@@ -1,0 +1,125 @@
+#include "cluster/report/run_record.h"
+
+#include <algorithm>
+
+#include "cluster/launch/manifest.h"
+#include "cluster/launch/plan.h"
+#include "cluster/train.h"
+#include "proto/base/failure.h"
+#include "proto/base/json.h"
+#include "proto/config/run_config.h"
+#include "proto/run/fingerprint.h"
+#include "proto/run/run_directory.h"
+#include "proto/system/files.h"
+
+namespace corridor::cluster {
+namespace {
+
+std::string text_of_value(const OrderedJson& value) {
+  return value.is_string() ? value.get<std::string>() : value.dump();
+}
+
+std::vector<std::pair<std::string, std::string>> made_with(const OrderedJson& manifest) {
+  std::vector<std::pair<std::string, std::string>> result;
+  for (const auto& [name, value] : manifest.items()) {
+    // The settings are shown as a whole, and the id is what lets one into a run.
+    if (name == "config" || name == "run_id") continue;
+    if (!value.is_object()) {
+      result.emplace_back(name, text_of_value(value));
+      continue;
+    }
+    for (const auto& [inner, version] : value.items()) {
+      result.emplace_back(inner, text_of_value(version));
+    }
+  }
+  return result;
+}
+
+// Or in what does not matter for the result.
+bool differ_in_seed_only(const RunConfig& a, const RunConfig& b) {
+  return std::ranges::none_of(changed_keys(a, b), [](const ChangedKey& key) {
+    return key.name != "run.seed" && decides_result(key.name);
+  });
+}
+
+ProcessMetrics read_metrics(const RunDirectory& directory, const std::string& process) {
+  const std::filesystem::path file = directory.metrics(process);
+  if (!std::filesystem::exists(file)) return {};
+  return parse_metrics(read_file(file), file.string());
+}
+
+}  // namespace
+
+std::filesystem::path RunRecord::driven_in(const std::string& world) const {
+  return world.empty() ? root : RunDirectory::scenarios(root) / world;
+}
+
+RunRecord read_run(const std::filesystem::path& root) {
+  const RunDirectory directory = RunDirectory::open(root);
+  RunRecord run;
+  run.root = root;
+  run.config = load_run_config(directory.config());
+  run.scenario = scenario_name(directory);
+  run.made_with = made_with(OrderedJson::parse(read_file(directory.manifest())));
+
+  for (int i = 0; i < run.config.run.actors; ++i) {
+    run.actors.push_back(read_metrics(directory, actor_name(i)));
+  }
+  run.learner.push_back(read_metrics(directory, kLearner));
+  if (std::all_of(run.actors.begin(), run.actors.end(),
+                  [](const ProcessMetrics& lines) { return lines.empty(); })) {
+    throw Failure("{} has no metrics of its actors yet: nothing was trained, or it has only begun",
+                  root.string());
+  }
+  if (const auto checkpoint = newest_checkpoint(directory)) {
+    run.rounds_done = checkpoint->rounds_done;
+    run.fingerprint = fingerprint(*checkpoint);
+  }
+
+  if (auto own = read_evaluations(directory.evaluation()); !own.empty()) {
+    run.evaluations[""] = std::move(own);
+    run.worlds_of_training.insert("");
+  }
+  std::error_code missing;
+  for (const auto& world :
+       std::filesystem::directory_iterator(RunDirectory::scenarios(root), missing)) {
+    auto results = read_evaluations(world.path() / "evaluation");
+    if (results.empty()) continue;
+    const std::string name = world.path().filename();
+    run.evaluations[name] = std::move(results);
+    if (differ_in_seed_only(run.config, load_run_config(world.path() / "config.toml"))) {
+      run.worlds_of_training.insert(name);
+    }
+  }
+  return run;
+}
+
+std::vector<RunGroup> grouped_runs(std::vector<RunRecord> runs) {
+  std::vector<RunGroup> groups;
+  std::map<std::string, int> trainings;  // by the scenario's name
+  for (RunRecord& run : runs) {
+    const auto group = std::find_if(groups.begin(), groups.end(), [&](const RunGroup& other) {
+      return differ_in_seed_only(other.runs.front().config, run.config);
+    });
+    if (group != groups.end()) {
+      group->runs.push_back(std::move(run));
+      continue;
+    }
+    const int number = ++trainings[run.scenario];
+    const std::string label =
+        number == 1 ? run.scenario : fmt::format("{} ({})", run.scenario, number);
+    groups.push_back({label, {}});
+    groups.back().runs.push_back(std::move(run));
+  }
+  for (RunGroup& group : groups) {
+    const auto seed = [](const RunRecord& run) { return run.config.run.seed; };
+    std::ranges::stable_sort(group.runs, {}, seed);
+    const auto twice = std::ranges::adjacent_find(group.runs, {}, seed);
+    if (twice == group.runs.end()) continue;
+    throw Failure("{} and {} are the same training with the same seed, {}: name one of them",
+                  twice->root.string(), std::next(twice)->root.string(), seed(*twice));
+  }
+  return groups;
+}
+
+}  // namespace corridor::cluster

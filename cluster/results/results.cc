@@ -1,0 +1,243 @@
+#include "cluster/results/results.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <set>
+#include <span>
+
+#include "proto/base/failure.h"
+#include "proto/settings/planner_pairs.h"
+
+namespace corridor::cluster {
+namespace {
+
+constexpr double kPer = 1000.0;  // steps
+
+// A quantity that is a sum over episodes over the sum of what it is counted by.
+struct Mean {
+  Quantity quantity;
+  double (*numerator)(const EpisodeResult&);
+  double (*denominator)(const EpisodeResult&, double step_s);
+};
+
+double thousands_of_steps(const EpisodeResult& episode, double) {
+  return static_cast<double>(episode.steps) / kPer;
+}
+double kilometres(const EpisodeResult& episode) { return episode.distance_m / 1000.0; }
+double kilometres_driven(const EpisodeResult& episode, double) { return kilometres(episode); }
+double lane_changes(const EpisodeResult& episode) {
+  return static_cast<double>(episode.lane_changes);
+}
+
+constexpr Mean kMeans[] = {
+    {Quantity::kBpReward, [](const EpisodeResult& e) { return e.bp_reward; }, thousands_of_steps},
+    {Quantity::kLaneChanges, lane_changes, thousands_of_steps},
+    {Quantity::kSpeed, kilometres,
+     [](const EpisodeResult& e, double step_s) {
+       return static_cast<double>(e.steps) * step_s / 3600.0;
+     }},
+    {Quantity::kHardBrakes,
+     [](const EpisodeResult& e) { return static_cast<double>(e.hard_brakes); }, thousands_of_steps},
+    {Quantity::kLaneChangesPerKm, lane_changes, kilometres_driven},
+    {Quantity::kBypassesPerKm,
+     [](const EpisodeResult& e) { return static_cast<double>(e.bypasses); }, kilometres_driven},
+};
+
+// What is drawn by the bootstrap: episodes, or training seeds.
+struct Units {
+  std::vector<double> numerators;
+  std::vector<double> denominators;
+};
+
+class ArmData {
+ public:
+  explicit ArmData(std::string planner)
+      : planner_(std::move(planner)), learned_(planner_pair(planner_).learned()) {}
+
+  const std::string& planner() const { return planner_; }
+
+  void add(const SeedResult& added) {
+    // Where nothing is learned all training seeds are one.
+    const std::uint64_t training_seed = learned_ ? added.training_seed : 0;
+    const EvaluationResult*& slot = results_[training_seed][added.result.seed];
+    CORRIDOR_CHECK(!learned_ || slot == nullptr, "{}, training seed {}, evaluation seed {}: twice",
+                   planner_, training_seed, added.result.seed);
+    if (slot == nullptr || slot->steps < added.result.steps) slot = &added.result;
+  }
+
+  Arm arm(std::uint64_t seed) const {
+    Arm arm;
+    arm.planner = planner_;
+    arm.training_seeds = learned_ ? results_.size() : 0;
+    std::set<std::uint64_t> evaluation_seeds;
+    std::vector<double> lane_steps;
+    for (const auto& [training_seed, by_seed] : results_) {
+      for (const auto& [evaluation_seed, result] : by_seed) {
+        evaluation_seeds.insert(evaluation_seed);
+        add_totals(*result, arm, lane_steps);
+      }
+    }
+    arm.evaluation_seeds = evaluation_seeds.size();
+    double all = 0.0;
+    for (const double steps : lane_steps) all += steps;
+    for (const double steps : lane_steps) arm.lane_shares.push_back(all > 0.0 ? steps / all : 0.0);
+
+    const auto set = [&](Quantity quantity, const Estimate& estimate) {
+      arm.estimates[static_cast<std::size_t>(quantity)] = estimate;
+    };
+    const double thousands = static_cast<double>(arm.steps) / kPer;
+    set(Quantity::kCollisions, rate(arm.collisions, thousands));
+    set(Quantity::kCollisionsPerKm, rate(arm.collisions, arm.distance_km));
+    constexpr std::array kKinds = {Quantity::kRearEnded, Quantity::kRearEnding,
+                                   Quantity::kSideByOther, Quantity::kSideByEgo,
+                                   Quantity::kOffRoad};
+    for (std::size_t kind = 0; kind < kCollisionKinds.size(); ++kind) {
+      set(kKinds[kind], rate(arm.collisions_by_kind[kind], thousands));
+    }
+    for (const Mean& mean : kMeans) set(mean.quantity, estimate(mean, seed));
+    return arm;
+  }
+
+  // The bootstrap's values of a quantity.
+  std::vector<double> resampled(Quantity quantity, std::uint64_t seed) const {
+    const auto mean = std::find_if(std::begin(kMeans), std::end(kMeans),
+                                   [&](const Mean& m) { return m.quantity == quantity; });
+    CORRIDOR_CHECK(mean != std::end(kMeans), "{}", static_cast<int>(quantity));
+    return over_seeds() ? bootstrap_interquartile_means(seed_values(*mean), seed)
+                        : bootstrap(*mean, seed);
+  }
+
+ private:
+  bool over_seeds() const { return results_.size() > 1; }
+
+  static void add_totals(const EvaluationResult& result, Arm& arm,
+                         std::vector<double>& lane_steps) {
+    arm.steps += result.steps;
+    arm.episodes += result.episodes;
+    arm.distance_km += result.distance_km;
+    arm.collisions += result.collisions;
+    for (std::size_t kind = 0; kind < kCollisionKinds.size(); ++kind) {
+      arm.collisions_by_kind[kind] += result.collisions_by_kind[kind];
+    }
+    for (const EpisodeResult& episode : result.per_episode) {
+      lane_steps.resize(std::max(lane_steps.size(), episode.lane_steps.size()));
+      for (std::size_t lane = 0; lane < episode.lane_steps.size(); ++lane) {
+        lane_steps[lane] += static_cast<double>(episode.lane_steps[lane]);
+      }
+    }
+  }
+
+  // 0 where nothing was driven.
+  static Estimate rate(std::int64_t count, double exposure) {
+    if (exposure <= 0.0) return {};
+    const Interval interval = poisson_interval(count);
+    return {static_cast<double>(count) / exposure,
+            {interval.low / exposure, interval.high / exposure}};
+  }
+
+  // All episodes of one training seed.
+  static Units episodes(const std::map<std::uint64_t, const EvaluationResult*>& by_seed,
+                        const Mean& mean) {
+    Units units;
+    for (const auto& [evaluation_seed, result] : by_seed) {
+      const double step_s = result->step_s();
+      for (const EpisodeResult& episode : result->per_episode) {
+        units.numerators.push_back(mean.numerator(episode));
+        units.denominators.push_back(mean.denominator(episode, step_s));
+      }
+    }
+    return units;
+  }
+
+  std::vector<double> seed_values(const Mean& mean) const {
+    std::vector<double> values;
+    for (const auto& [training_seed, by_seed] : results_) {
+      const Units units = episodes(by_seed, mean);
+      double numerator = 0.0, denominator = 0.0;
+      for (const double value : units.numerators) numerator += value;
+      for (const double value : units.denominators) denominator += value;
+      values.push_back(denominator > 0.0 ? numerator / denominator : 0.0);
+    }
+    return values;
+  }
+
+  std::vector<double> bootstrap(const Mean& mean, std::uint64_t seed) const {
+    const Units units = episodes(results_.begin()->second, mean);
+    std::vector<double> values = bootstrap_ratios(units.numerators, units.denominators, seed);
+    // Over nothing, where the ego stood still.
+    for (double& value : values) value = std::isfinite(value) ? value : 0.0;
+    return values;
+  }
+
+  Estimate estimate(const Mean& mean, std::uint64_t seed) const {
+    return {interquartile_mean(seed_values(mean)),
+            percentile_interval(resampled(mean.quantity, seed))};
+  }
+
+  std::string planner_;
+  bool learned_;
+  // By training seed, then evaluation seed.
+  std::map<std::uint64_t, std::map<std::uint64_t, const EvaluationResult*>> results_;
+};
+
+std::optional<Estimate> ratio(Quantity quantity, const Arm& arm, const ArmData& data,
+                              const Arm& baseline, const ArmData& baseline_data,
+                              std::uint64_t seed) {
+  const double value = arm[quantity].value, other = baseline[quantity].value;
+  if (other <= 0.0) return std::nullopt;
+  if (quantity == Quantity::kCollisions) {
+    return Estimate{value / other, poisson_ratio_interval(
+                                       arm.collisions, static_cast<double>(arm.steps),
+                                       baseline.collisions, static_cast<double>(baseline.steps))};
+  }
+  std::vector<double> ratios = data.resampled(quantity, seed);
+  const std::vector<double> others = baseline_data.resampled(quantity, seed + 1);
+  for (std::size_t i = 0; i < ratios.size(); ++i) {
+    ratios[i] = others[i] > 0.0 ? ratios[i] / others[i] : std::numeric_limits<double>::infinity();
+  }
+  return Estimate{value / other, percentile_interval(std::move(ratios))};
+}
+
+}  // namespace
+
+const Arm* find_arm(const std::vector<Arm>& arms, const std::string& planner) {
+  const auto found = std::find_if(arms.begin(), arms.end(),
+                                  [&](const Arm& arm) { return arm.planner == planner; });
+  return found == arms.end() ? nullptr : &*found;
+}
+
+std::vector<Arm> arms_of(const std::vector<SeedResult>& results, std::uint64_t seed) {
+  std::vector<ArmData> data;
+  for (const PlannerPair& pair : kPlannerPairs) {
+    ArmData arm(pair.name);
+    bool any = false;
+    for (const SeedResult& result : results) {
+      if (result.result.planner != pair.name) continue;
+      arm.add(result);
+      any = true;
+    }
+    if (any) data.push_back(std::move(arm));
+  }
+  std::vector<Arm> arms;
+  for (const ArmData& arm : data) arms.push_back(arm.arm(seed));
+
+  const auto ratios_to = [&](const char* name, std::size_t index) -> std::optional<Ratios> {
+    const Arm* baseline = find_arm(arms, name);
+    if (baseline == nullptr || baseline == &arms[index]) return std::nullopt;
+    const ArmData& baseline_data = data[static_cast<std::size_t>(baseline - arms.data())];
+    Ratios ratios;
+    for (std::size_t i = 0; i < kCompared.size(); ++i) {
+      ratios[i] = ratio(kCompared[i], arms[index], data[index], *baseline, baseline_data, seed);
+    }
+    return ratios;
+  };
+  for (std::size_t i = 0; i < arms.size(); ++i) {
+    arms[i].to_rules = ratios_to(kRules, i);
+    arms[i].to_sumo = ratios_to(kSumo, i);
+  }
+  return arms;
+}
+
+}  // namespace corridor::cluster

@@ -1,0 +1,32 @@
+// What other processes append to text files, line by line, as it comes.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace corridor::cluster {
+
+// What is appended to a text file, line by line. The file may come later.
+class LineTail {
+ public:
+  // Begins at the file's present end.
+  explicit LineTail(std::filesystem::path file);
+
+  // The whole lines since the last call; a line without its end yet waits for the next call. At
+  // most 4 MiB a call, the rest follows.
+  std::vector<std::string> read();
+
+ private:
+  std::filesystem::path file_;
+  std::uintmax_t offset_ = 0;
+};
+
+// The steps driven so far, of a line "steps/total" of an evaluating actor; nothing when the text is
+// no such line.
+std::optional<std::int64_t> parse_step_count(std::string_view text);
+
+}  // namespace corridor::cluster

@@ -1,0 +1,110 @@
+#include "cluster/watch/training_scalars.h"
+
+#include <algorithm>
+#include <string_view>
+
+#include "proto/base/failure.h"
+#include "proto/run/metrics.h"
+#include "proto/settings/schedule.h"
+
+namespace corridor::cluster {
+namespace {
+
+struct Tag {
+  std::string_view process;
+  const char* metric;
+  const char* group;   // before the phase
+  const char* name;    // behind it
+  const char* weight;  // the metric that the value is a mean over; may be empty
+};
+constexpr Tag kTags[] = {
+    {"actor", "charts/reward_per_1000", "train", "reward_per_1000_steps", ""},
+    {"actor", "charts/collisions_per_1000", "train", "collisions_per_1000_steps", ""},
+    {"actor", "charts/episodic_return", "train", "reward_per_episode", "charts/episodes"},
+    {"actor", "charts/epsilon", "train", "epsilon", ""},
+    {"learner", "losses/td_loss", "train", "loss", ""},
+    {"learner", "losses/q_values", "train", "q", ""},
+    {"learner", "losses/risk_values", "train", "risk", ""},
+    {"learner", "charts/learning_rate", "train", "learning_rate", ""},
+    {"learner", "charts/SPS", "train", "steps_per_second", ""},
+    {"learner", "eval/reward_per_1000", "selection", "reward_per_1000_steps", ""},
+    {"learner", "eval/collisions_per_1000", "selection", "collisions_per_1000_steps", ""},
+    {"learner", "eval/score", "selection", "score", ""},
+    {"replay", "replay/samples_per_insert", "train", "replay_ratio", ""},
+    {"replay", "replay/size", "train", "replay_size", ""},
+};
+
+std::string full_name(const Tag& tag, const std::string& phase) {
+  const char* planner = phase == phase_name(Phase::kMop) ? "mop" : "bp";
+  return fmt::format("{}/{}/{}", tag.group, planner, tag.name);
+}
+
+}  // namespace
+
+TrainingScalars::TrainingScalars(const RunConfig& config)
+    : steps_per_round_(Schedule(config).steps_per_round()),
+      actors_reached_(static_cast<std::size_t>(config.run.actors)) {}
+
+std::int64_t TrainingScalars::steps_before(std::uint64_t round) const {
+  return static_cast<std::int64_t>(round) * steps_per_round_;
+}
+
+void TrainingScalars::on_actor(int actor, const MetricsLine& line) {
+  const std::int64_t step = steps_before(line.round + 1);
+  std::int64_t& reached = actors_reached_.at(static_cast<std::size_t>(actor));
+  // Started again, it says what it said before.
+  if (step <= reached) return;
+  reached = step;
+  if (step <= actors_last_) return;
+  auto& sums = waiting_[step];
+  for (const Tag& tag : kTags) {
+    const auto value = line.values.find(tag.metric);
+    if (tag.process != "actor" || value == line.values.end()) continue;
+    const double weight = *tag.weight == '\0' ? 1.0 : value_of(line.values, tag.weight);
+    if (weight <= 0.0) continue;
+    Sum& sum = sums[full_name(tag, line.phase)];
+    sum.value += weight * value->second;
+    sum.weight += weight;
+  }
+  const std::int64_t all = *std::ranges::min_element(actors_reached_);
+  while (!waiting_.empty() && waiting_.begin()->first <= all) {
+    StepScalars scalars{waiting_.begin()->first, {}};
+    for (const auto& [tag, sum] : waiting_.begin()->second) {
+      scalars.values.emplace_back(tag, sum.value / sum.weight);
+    }
+    actors_last_ = scalars.step;
+    ready_.push_back(std::move(scalars));
+    waiting_.erase(waiting_.begin());
+  }
+}
+
+void TrainingScalars::on_learner(const MetricsLine& line) {
+  give_on(line, "learner", learner_last_);
+}
+
+void TrainingScalars::on_replay(const MetricsLine& line) { give_on(line, "replay", replay_last_); }
+
+void TrainingScalars::give_on(const MetricsLine& line, const char* process, std::int64_t& last) {
+  StepScalars scalars{steps_before(line.round + 1), {}};
+  if (scalars.step <= last) return;
+  last = scalars.step;
+  for (const Tag& tag : kTags) {
+    const auto value = line.values.find(tag.metric);
+    if (tag.process == process && value != line.values.end()) {
+      scalars.values.emplace_back(full_name(tag, line.phase), value->second);
+    }
+  }
+  if (!scalars.values.empty()) ready_.push_back(std::move(scalars));
+}
+
+std::vector<StepScalars> TrainingScalars::take() { return std::exchange(ready_, {}); }
+
+void TrainingScalars::go_back_to(std::int64_t step) {
+  waiting_.clear();
+  for (std::int64_t& reached : actors_reached_) reached = std::min(reached, step);
+  for (std::int64_t* last : {&actors_last_, &learner_last_, &replay_last_}) {
+    *last = std::min(*last, step);
+  }
+}
+
+}  // namespace corridor::cluster

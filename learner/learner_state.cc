@@ -1,0 +1,139 @@
+#include "learner/learner_state.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "proto/base/failure.h"
+#include "proto/base/json.h"
+
+namespace corridor::learner {
+namespace {
+
+// "published.0.mop" ..., oldest first.
+std::string published_name(std::size_t i, const char* member) {
+  return fmt::format("published.{}.{}", i, member);
+}
+
+std::string shape_json(const NetworkShape& shape) {
+  return Json{{"observations", shape.observations},
+              {"hidden", shape.hidden},
+              {"actions", shape.actions},
+              {"dueling", shape.dueling}}
+      .dump();
+}
+
+// Reads tensors of a known size.
+class Reader {
+ public:
+  Reader(const TensorFile& tensors, const std::string& file) : tensors_(tensors), file_(file) {}
+
+  std::vector<float> floats(const std::string& name, std::size_t size) const {
+    return sized<float>(name, size);
+  }
+  template <typename T>
+  T number(const std::string& name) const {
+    return sized<T>(name, 1)[0];
+  }
+  bool has(const std::string& name) const { return tensors_.tensors.contains(name); }
+
+ private:
+  template <typename T>
+  std::vector<T> sized(const std::string& name, std::size_t size) const {
+    const std::vector<T>& values = tensors_.get<T>(name, file_);
+    if (values.size() != size) {
+      throw Failure("{}: '{}' has {} values, config.toml asks for {}; was config.toml changed?",
+                    file_, name, values.size(), size);
+    }
+    return values;
+  }
+
+  const TensorFile& tensors_;
+  const std::string& file_;
+};
+
+template <typename T>
+void put_number(TensorFile& tensors, const std::string& name, T value) {
+  tensors.put<T>(name, {value});
+}
+
+}  // namespace
+
+Phase phase_in_progress(const Schedule& schedule, std::uint64_t next_round) {
+  return schedule.phase_of(std::min(next_round, schedule.rounds() - 1));
+}
+
+Networks networks_to_use(const LearnerState& state, Phase phase) {
+  const Weights& newest = state.published.back();
+  Networks networks{newest.mop, newest.bp};
+  if (state.best) (phase == Phase::kMop ? networks.mop : networks.bp) = state.best->parameters;
+  return networks;
+}
+
+TensorFile to_tensors(const LearnerState& state, const RunConfig& config) {
+  const Phase phase = phase_in_progress(Schedule(config), state.next_round);
+  TensorFile tensors;
+  tensors.metadata = {{"format", "corridor learner checkpoint"},
+                      {"phase", phase_name(phase)},
+                      {"round", std::to_string(state.next_round)},
+                      {"mop.shape", shape_json(config.network(Phase::kMop))},
+                      {"bp.shape", shape_json(config.network(Phase::kBp))}};
+  Networks networks = networks_to_use(state, phase);
+  tensors.put("mop", std::move(networks.mop));
+  tensors.put("bp", std::move(networks.bp));
+
+  put_number(tensors, "next_round", state.next_round);
+  tensors.put("td.online", state.td.online);
+  tensors.put("td.target", state.td.target);
+  tensors.put("td.mean_gradient", state.td.mean_gradient);
+  tensors.put("td.mean_squared_gradient", state.td.mean_squared_gradient);
+  put_number(tensors, "td.updates", state.td.updates);
+  for (std::size_t i = 0; i < state.published.size(); ++i) {
+    put_number(tensors, published_name(i, "version"), state.published[i].version);
+    tensors.put(published_name(i, "mop"), state.published[i].mop);
+    tensors.put(published_name(i, "bp"), state.published[i].bp);
+  }
+  if (state.best) {
+    put_number(tensors, "best.version", state.best->version);
+    put_number(tensors, "best.score", state.best->score);
+    tensors.put("best.parameters", state.best->parameters);
+  }
+  return tensors;
+}
+
+LearnerState from_tensors(const TensorFile& tensors, const RunConfig& config,
+                          const std::string& file) {
+  const Reader reader(tensors, file);
+  const Schedule schedule(config);
+  LearnerState state;
+  state.next_round = reader.number<std::uint64_t>("next_round");
+  if (state.next_round > schedule.rounds()) {
+    throw Failure("{}: {} rounds done of {}; was config.toml changed?", file, state.next_round,
+                  schedule.rounds());
+  }
+  const std::size_t mop = config.parameters(Phase::kMop);
+  const std::size_t bp = config.parameters(Phase::kBp);
+  const std::size_t learning =
+      phase_in_progress(schedule, state.next_round) == Phase::kMop ? mop : bp;
+
+  state.td = {reader.floats("td.online", learning), reader.floats("td.target", learning),
+              reader.floats("td.mean_gradient", learning),
+              reader.floats("td.mean_squared_gradient", learning),
+              reader.number<std::uint64_t>("td.updates")};
+  for (std::size_t i = 0; i < 2 && (i == 0 || reader.has(published_name(i, "version"))); ++i) {
+    state.published.push_back({reader.number<std::uint64_t>(published_name(i, "version")),
+                               reader.floats(published_name(i, "mop"), mop),
+                               reader.floats(published_name(i, "bp"), bp)});
+  }
+  if (state.published.back().version != state.next_round) {
+    throw Failure("{}: weights {} published before round {}; the file is damaged", file,
+                  state.published.back().version, state.next_round);
+  }
+  if (reader.has("best.version")) {
+    state.best =
+        Candidate{reader.number<std::uint64_t>("best.version"), reader.number<double>("best.score"),
+                  reader.floats("best.parameters", learning)};
+  }
+  return state;
+}
+
+}  // namespace corridor::learner

@@ -1,0 +1,35 @@
+#include "proto/base/text.h"
+
+#include <cmath>
+
+#include "proto/base/format.h"
+
+namespace corridor {
+
+std::string grouped(std::int64_t number) {
+  std::string text = std::to_string(number);
+  const std::size_t first_digit = number < 0 ? 1 : 0;
+  for (std::size_t at = text.size(); at > first_digit + 3;) {
+    at -= 3;
+    text.insert(at, 1, ',');
+  }
+  return text;
+}
+
+std::string duration_text(double seconds) {
+  const auto whole = static_cast<std::int64_t>(std::llround(seconds));
+  if (whole < 60) return fmt::format("{} s", whole);
+  if (whole < 3600) return fmt::format("{} min {:02d} s", whole / 60, whole % 60);
+  return fmt::format("{} h {:02d} min", whole / 3600, whole / 60 % 60);
+}
+
+std::string listed(const std::vector<std::string>& texts, std::string_view separator) {
+  std::string list;
+  for (const std::string& text : texts) {
+    if (&text != &texts.front()) list += separator;
+    list += text;
+  }
+  return list;
+}
+
+}  // namespace corridor

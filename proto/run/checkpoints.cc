@@ -1,0 +1,221 @@
+#include "proto/run/checkpoints.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cinttypes>
+#include <cstdio>
+#include <utility>
+
+#include "proto/base/failure.h"
+#include "proto/base/hash.h"
+#include "proto/base/json.h"
+#include "proto/run/run_directory.h"
+#include "proto/system/files.h"
+#include "proto/system/pulse.h"
+
+namespace corridor {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kManifest = "manifest.json";
+
+std::optional<std::uint64_t> round_of(const fs::path& path) {
+  const std::string name = path.filename().string();
+  std::uint64_t round = 0;
+  const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), round);
+  if (error != std::errc() || end != name.data() + name.size()) return std::nullopt;
+  return round;
+}
+
+// Ascending.
+std::vector<std::uint64_t> rounds_in(const fs::path& directory) {
+  std::vector<std::uint64_t> rounds;
+  for (const auto& entry : fs::directory_iterator(directory)) {
+    const auto round = round_of(entry.path());
+    if (round && entry.is_directory()) rounds.push_back(*round);
+  }
+  std::sort(rounds.begin(), rounds.end());
+  return rounds;
+}
+
+std::string hash_of(std::string_view content) {
+  Hash hash;
+  hash.add(content.data(), content.size());
+  return hash.hex();
+}
+
+// "files" of a manifest.
+Json files_of(const fs::path& checkpoint) {
+  const fs::path file = checkpoint / kManifest;
+  try {
+    const Json manifest = read_json(file);
+    if (whole_number<std::uint64_t>(manifest.at("round")) != checkpoint_round(checkpoint)) {
+      throw Failure("it is of another round");
+    }
+    for (const auto& [name, expected] : manifest.at("files").items()) {
+      whole_number<std::uint64_t>(expected.at("size"));
+      if (!expected.at("xxh3").is_string()) throw Failure("{} has no hash", name);
+    }
+    return manifest.at("files");
+  } catch (const std::exception& error) {
+    throw Failure("{} is damaged: {}", file.string(), error.what());
+  }
+}
+
+std::string read_checked(const fs::path& file, const Json& expected) {
+  const auto size = expected.at("size").get<std::uint64_t>();
+  std::error_code error;
+  // What is of another size is not read: it may be of any size.
+  std::string content;
+  if (fs::file_size(file, error) == size || error) content = read_file(file);
+  if (content.size() != size || hash_of(content) != expected.at("xxh3").get<std::string>()) {
+    throw Failure("{} is damaged: its size or hash is not what the manifest beside it says",
+                  file.string());
+  }
+  return content;
+}
+
+// The manifest of the newest checkpoint, from which files that it shares need not be read again.
+Json known_files(const std::optional<fs::path>& checkpoint) {
+  return checkpoint ? files_of(*checkpoint) : Json::object();
+}
+
+}  // namespace
+
+fs::path Checkpoints::begin(std::uint64_t round) const {
+  const fs::path partial = directory_ / (std::to_string(round) + ".partial");
+  on_disk("create", partial, [&] {
+    fs::remove_all(partial);
+    fs::create_directories(partial);
+  });
+  return partial;
+}
+
+void Checkpoints::commit(std::uint64_t round, int kept) const {
+  const fs::path partial = directory_ / (std::to_string(round) + ".partial");
+  const fs::path whole = directory_ / std::to_string(round);
+  on_disk("complete checkpoint", partial, [&] {
+    const std::optional<fs::path> before = newest();
+    const Json known = known_files(before);
+    Json files = Json::object();
+    for (const auto& entry : fs::directory_iterator(partial)) {
+      const std::string name = entry.path().filename().string();
+      if (known.contains(name) && fs::equivalent(entry.path(), *before / name)) {
+        files[name] = known.at(name);
+        continue;
+      }
+      const std::string content = read_file(entry.path());
+      files[name] = {{"size", content.size()}, {"xxh3", hash_of(content)}};
+    }
+    write_file(partial / kManifest, Json{{"round", round}, {"files", files}}.dump(2) + "\n");
+    // One that is there already is of a continuation that was given up.
+    fs::remove_all(whole);
+    fs::rename(partial, whole);
+    sync_directory(directory_);
+
+    std::vector<fs::path> doomed;
+    std::vector<fs::path> earlier;
+    for (const std::uint64_t found : rounds_in(directory_)) {
+      if (found < round) earlier.push_back(directory_ / std::to_string(found));
+    }
+    const auto earlier_kept =
+        std::min(earlier.size(), static_cast<std::size_t>(std::max(kept, 1) - 1));
+    earlier.erase(earlier.begin(), earlier.end() - static_cast<std::ptrdiff_t>(earlier_kept));
+    for (const auto& entry : fs::directory_iterator(directory_)) {
+      const bool stays = entry.path() == whole ||
+                         std::find(earlier.begin(), earlier.end(), entry.path()) != earlier.end();
+      if (!stays) doomed.push_back(entry.path());
+    }
+    for (const fs::path& path : doomed) fs::remove_all(path);
+  });
+}
+
+std::optional<fs::path> Checkpoints::newest() const {
+  std::optional<fs::path> result;
+  on_disk("read", directory_, [&] {
+    const std::vector<std::uint64_t> rounds = rounds_in(directory_);
+    if (!rounds.empty()) result = directory_ / std::to_string(rounds.back());
+  });
+  return result;
+}
+
+void Checkpoints::check(const fs::path& checkpoint) {
+  const Json files = files_of(checkpoint);
+  for (const auto& [name, expected] : files.items()) {
+    read_checked(checkpoint / name, expected);
+  }
+}
+
+std::vector<std::string> Checkpoints::set_aside_damaged() const {
+  std::vector<std::string> lines;
+  on_disk("set aside", directory_, [&] {
+    std::vector<fs::path> damaged;
+    const std::vector<std::uint64_t> rounds = rounds_in(directory_);
+    for (auto round = rounds.rbegin(); round != rounds.rend(); ++round) {
+      const fs::path checkpoint = directory_ / std::to_string(*round);
+      try {
+        check(checkpoint);
+        break;
+      } catch (const Failure& failure) {
+        lines.emplace_back(failure.what());
+        damaged.push_back(checkpoint);
+      }
+    }
+    if (!damaged.empty() && damaged.size() == rounds.size()) {
+      throw Failure("no checkpoint in {} is whole: {}; start the training anew",
+                    directory_.string(), lines.front());
+    }
+    for (const fs::path& checkpoint : damaged) {
+      const fs::path aside = checkpoint.string() + ".damaged";
+      fs::remove_all(aside);
+      fs::rename(checkpoint, aside);
+    }
+  });
+  return lines;
+}
+
+std::uint64_t checkpoint_round(const fs::path& checkpoint) {
+  const auto round = round_of(checkpoint);
+  CORRIDOR_CHECK(round, "{} is no checkpoint", checkpoint.string());
+  return *round;
+}
+
+TensorFile read_checkpoint_file(const fs::path& checkpoint, const std::string& name) {
+  beat();  // of many files, one after the other
+  const Json files = files_of(checkpoint);
+  const fs::path file = checkpoint / name;
+  if (!files.contains(name)) {
+    throw Failure("{} is damaged: it names no {}", (checkpoint / kManifest).string(), name);
+  }
+  return parse_tensors(read_checked(file, files.at(name)), file.string());
+}
+
+std::string RowsFile::name() const { return fmt::format("rows-{}-{}", first_key, end_key); }
+
+std::vector<RowsFile> rows_files(const fs::path& checkpoint) {
+  std::vector<RowsFile> files;
+  on_disk("read", checkpoint, [&] {
+    for (const auto& entry : fs::directory_iterator(checkpoint)) {
+      const std::string name = entry.path().filename().string();
+      RowsFile file;
+      if (std::sscanf(name.c_str(), "rows-%" SCNu64 "-%" SCNu64, &file.first_key, &file.end_key) ==
+              2 &&
+          file.name() == name) {
+        files.push_back(file);
+      }
+    }
+  });
+  std::sort(files.begin(), files.end(),
+            [](const RowsFile& a, const RowsFile& b) { return a.first_key < b.first_key; });
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    const bool follows = i == 0 || files[i].first_key == files[i - 1].end_key;
+    if (!follows || files[i].first_key >= files[i].end_key) {
+      throw Failure("{} is damaged: rows before {} are missing", checkpoint.string(),
+                    files[i].name());
+    }
+  }
+  return files;
+}
+
+}  // namespace corridor

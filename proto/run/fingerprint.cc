@@ -1,0 +1,81 @@
+#include "proto/run/fingerprint.h"
+
+#include <algorithm>
+#include <span>
+
+#include "proto/base/failure.h"
+#include "proto/base/hash.h"
+#include "proto/run/checkpoints.h"
+
+namespace corridor {
+namespace {
+
+void add(Hash& hash, const TensorFile& file) {
+  hash.add_value(static_cast<std::uint64_t>(file.metadata.size()));
+  for (const auto& [key, value] : file.metadata) {
+    hash.add(key);
+    hash.add(value);
+  }
+  hash.add_value(static_cast<std::uint64_t>(file.tensors.size()));
+  for (const auto& [name, tensor] : file.tensors) {
+    hash.add(name);
+    hash.add_value(static_cast<std::uint64_t>(tensor.data.index()));
+    hash.add_value(static_cast<std::uint64_t>(tensor.shape.size()));
+    for (const std::size_t size : tensor.shape) hash.add_value(static_cast<std::uint64_t>(size));
+    std::visit([&](const auto& values) { hash.add_values(std::span(values)); }, tensor.data);
+  }
+}
+
+// replay.safetensors with all of the rows.
+TensorFile whole_replay(const std::filesystem::path& checkpoint) {
+  constexpr const char* kFile = "replay.safetensors";
+  TensorFile replay = read_checkpoint_file(checkpoint, kFile);
+  const auto first_of = [&](const char* tensor) {
+    return replay.get<std::uint64_t>(tensor, kFile).at(0);
+  };
+  const std::uint64_t next_key = first_of("next_key");
+  const std::uint64_t oldest_key = next_key - replay.get<float>("leaves", kFile).size();
+  std::vector<float> rows;
+  std::size_t stride = 0;
+  for (const RowsFile& file : rows_files(checkpoint)) {
+    const TensorFile part = read_checkpoint_file(checkpoint, file.name());
+    const auto& values = part.get<float>("rows", file.name());
+    stride = part.tensors.at("rows").shape.back();
+    const std::uint64_t given_way = oldest_key > file.first_key ? oldest_key - file.first_key : 0;
+    const std::size_t skipped = std::min<std::size_t>(given_way * stride, values.size());
+    rows.insert(rows.end(), values.begin() + static_cast<std::ptrdiff_t>(skipped), values.end());
+  }
+  if (rows.size() != (next_key - oldest_key) * stride) {
+    throw Failure("{} is damaged: it has not all rows with the keys {} to {}", checkpoint.string(),
+                  oldest_key, next_key);
+  }
+  replay.tensors.insert_or_assign("rows", Tensor{{next_key - oldest_key, stride}, std::move(rows)});
+  return replay;
+}
+
+}  // namespace
+
+std::optional<Checkpoint> newest_checkpoint(const RunDirectory& directory) {
+  const auto found = Checkpoints(directory.checkpoints()).newest();
+  if (!found) return std::nullopt;
+  return Checkpoint{*found, checkpoint_round(*found) + 1};
+}
+
+std::uint64_t rounds_done(const RunDirectory& directory) {
+  const std::optional<Checkpoint> checkpoint = newest_checkpoint(directory);
+  return checkpoint ? checkpoint->rounds_done : 0;
+}
+
+std::string fingerprint(const TensorFile& learner, const TensorFile& replay) {
+  Hash hash;
+  add(hash, learner);
+  add(hash, replay);
+  return hash.hex();
+}
+
+std::string fingerprint(const Checkpoint& checkpoint) {
+  return fingerprint(read_checkpoint_file(checkpoint.directory, "learner.safetensors"),
+                     whole_replay(checkpoint.directory));
+}
+
+}  // namespace corridor

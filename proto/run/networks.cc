@@ -1,0 +1,50 @@
+#include "proto/run/networks.h"
+
+#include <string>
+
+#include "proto/base/failure.h"
+#include "proto/run/checkpoints.h"
+#include "proto/run/tensor_file.h"
+
+namespace corridor {
+namespace {
+
+constexpr const char* kCheckpointFile = "learner.safetensors";
+
+Networks networks_in(const TensorFile& tensors, const RunConfig& config, const std::string& file) {
+  Networks networks{tensors.get<float>("mop", file), tensors.get<float>("bp", file)};
+  const auto check = [&](const std::vector<float>& parameters, Phase phase) {
+    const std::size_t expected = config.parameters(phase);
+    if (parameters.size() == expected) return;
+    throw Failure("{}: the {} has {} parameters, the settings ask for {}: they are of another one",
+                  file, phase_name(phase), parameters.size(), expected);
+  };
+  check(networks.mop, Phase::kMop);
+  check(networks.bp, Phase::kBp);
+  return networks;
+}
+
+}  // namespace
+
+std::optional<Networks> given_networks(const RunDirectory& directory, const RunConfig& config) {
+  const std::filesystem::path file = directory.networks();
+  if (!std::filesystem::exists(file)) return std::nullopt;
+  return networks_in(read_tensors(file), config, file.string());
+}
+
+void write_networks(const RunDirectory& directory, const Networks& networks) {
+  TensorFile tensors;
+  tensors.metadata = {{"format", "corridor networks"}};
+  tensors.put("mop", networks.mop);
+  tensors.put("bp", networks.bp);
+  write_tensors(directory.networks(), tensors);
+}
+
+std::optional<Networks> newest_networks(const RunDirectory& directory, const RunConfig& config) {
+  const auto checkpoint = Checkpoints(directory.checkpoints()).newest();
+  if (!checkpoint) return given_networks(directory, config);
+  return networks_in(read_checkpoint_file(*checkpoint, kCheckpointFile), config,
+                     (*checkpoint / kCheckpointFile).string());
+}
+
+}  // namespace corridor

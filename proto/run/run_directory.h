@@ -1,0 +1,66 @@
+// Where everything of a run lies.
+//
+//   config.toml                  the resolved scenario
+//   manifest.json                run id, seed, versions, host
+//   sumo/                        network and traffic for SUMO (scenarios/)
+//   log/<process>.log            one text log a process
+//   metrics/<process>.jsonl      one JSON-lines file a process (proto/run/metrics.h)
+//   networks.safetensors         networks that were given to it (proto/run/networks.h)
+//   checkpoints/<round>/         proto/run/checkpoints.h
+//   evaluation/                  <planner>_<seed>.json; episodes/<planner>_<seed>_<episode>.json;
+//                                hindsight/<planner>_<seed>.json
+//   scenarios/<name>/            the same, of evaluations in another scenario's world
+//   tensorboard/                 event files (cluster/watch/tensorboard.h)
+//   report/                      what `corridor report` wrote
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace corridor {
+
+class RunDirectory {
+ public:
+  // Throws Failure when it exists already (saying what to do) or cannot be created.
+  static RunDirectory create(const std::filesystem::path& root);
+  // Creates those of its folders that are missing: version control keeps no empty ones. Throws
+  // Failure when it is missing or no run directory (no config.toml or manifest.json).
+  static RunDirectory open(const std::filesystem::path& root);
+
+  // What processes that were killed left half-written. Nobody else may be using the directory
+  // (cluster/launch/run_lock.h).
+  void remove_leftovers() const;
+
+  const std::filesystem::path& root() const { return root_; }
+  std::filesystem::path config() const { return root_ / "config.toml"; }
+  std::filesystem::path manifest() const { return root_ / "manifest.json"; }
+  std::filesystem::path network() const { return root_ / "sumo" / "road.net.xml"; }
+  std::filesystem::path routes() const { return root_ / "sumo" / "traffic.rou.xml"; }
+  std::filesystem::path log(std::string_view process) const;
+  std::filesystem::path metrics(std::string_view process) const;
+  std::filesystem::path networks() const { return root_ / "networks.safetensors"; }
+  std::filesystem::path checkpoints() const { return root_ / "checkpoints"; }
+  std::filesystem::path tensorboard() const { return root_ / "tensorboard"; }
+  std::filesystem::path evaluation() const { return root_ / "evaluation"; }
+  std::filesystem::path episodes() const { return root_ / "evaluation" / "episodes"; }
+  std::filesystem::path hindsight() const { return root_ / "evaluation" / "hindsight"; }
+  // Where a run's networks were driven in other scenarios: a run directory for each, by its name.
+  static std::filesystem::path scenarios(const std::filesystem::path& root) {
+    return root / "scenarios";
+  }
+
+ private:
+  explicit RunDirectory(std::filesystem::path root) : root_(std::move(root)) {}
+  std::filesystem::path root_;
+};
+
+// manifest.json of a run, as every process needs it.
+struct RunManifest {
+  std::string run_id;
+};
+RunManifest read_manifest(const RunDirectory& directory);
+
+}  // namespace corridor

@@ -1,0 +1,66 @@
+#include "proto/settings/schedule.h"
+
+#include <algorithm>
+
+#include "proto/base/failure.h"
+
+namespace corridor {
+namespace {
+
+std::uint64_t rounds_for(std::int64_t steps, std::int64_t steps_per_round) {
+  return static_cast<std::uint64_t>(
+      std::max<std::int64_t>(1, (steps + steps_per_round - 1) / steps_per_round));
+}
+
+}  // namespace
+
+Schedule::Schedule(const RunConfig& config)
+    : steps_per_round_(static_cast<std::int64_t>(config.schedule.steps_per_round) *
+                       config.run.actors),
+      phase_rounds_{rounds_for(config.phase(Phase::kMop).steps, steps_per_round_),
+                    rounds_for(config.phase(Phase::kBp).steps, steps_per_round_)},
+      selection_every_(rounds_for(config.schedule.selection_every_steps, steps_per_round_)),
+      checkpoint_every_(rounds_for(config.schedule.checkpoint_every_steps, steps_per_round_)) {}
+
+std::uint64_t Schedule::rounds() const { return phase_rounds_[0] + phase_rounds_[1]; }
+
+std::uint64_t Schedule::first_round(Phase phase) const {
+  return phase == Phase::kMop ? 0 : phase_rounds_[0];
+}
+
+std::uint64_t Schedule::rounds_of(Phase phase) const {
+  return phase_rounds_[static_cast<std::size_t>(phase)];
+}
+
+Phase Schedule::phase_of(std::uint64_t round) const {
+  CORRIDOR_CHECK(round < rounds(), "round {} of {}", round, rounds());
+  return round < phase_rounds_[0] ? Phase::kMop : Phase::kBp;
+}
+
+std::int64_t Schedule::steps_per_round() const { return steps_per_round_; }
+
+std::int64_t Schedule::phase_steps_before(std::uint64_t round) const {
+  return static_cast<std::int64_t>(round - first_round(phase_of(round))) * steps_per_round_;
+}
+
+double Schedule::phase_progress(std::uint64_t round) const {
+  const Phase phase = phase_of(round);
+  return static_cast<double>(round - first_round(phase)) / static_cast<double>(rounds_of(phase));
+}
+
+std::uint64_t Schedule::weights_version(std::uint64_t round) const {
+  const std::uint64_t first = first_round(phase_of(round));
+  return round > first ? round - 1 : first;
+}
+
+bool Schedule::selects_in(std::uint64_t round) const {
+  const Phase phase = phase_of(round);
+  const std::uint64_t done = round - first_round(phase) + 1;
+  return done % selection_every_ == 0 || done == rounds_of(phase);
+}
+
+bool Schedule::checkpoints_after(std::uint64_t round) const {
+  return (round + 1) % checkpoint_every_ == 0 || round + 1 == rounds();
+}
+
+}  // namespace corridor

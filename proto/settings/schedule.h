@@ -1,0 +1,48 @@
+// When everything happens: training is cut into rounds (docs/architecture.md, "Lockstep"). Every
+// process derives the same schedule from the run's configuration. Pure.
+//
+// Round r: each actor drives steps_per_round steps with weights version `weights_version(r)`;
+// block r: the learner trains on rounds up to r and publishes version r + 1. Round r and block
+// r - 1 go on at the same time. A phase's rounds are consecutive; the BP's follow the MoP's.
+#pragma once
+
+#include <cstdint>
+
+#include "proto/settings/settings.h"
+
+namespace corridor {
+
+class Schedule {
+ public:
+  explicit Schedule(const RunConfig& config);
+
+  std::uint64_t rounds() const;  // of both phases
+  std::uint64_t first_round(Phase phase) const;
+  std::uint64_t rounds_of(Phase phase) const;  // the budget divided, rounded up
+  Phase phase_of(std::uint64_t round) const;   // round < rounds()
+
+  // Environment steps of all actors in one round, and in the phase before `round`.
+  std::int64_t steps_per_round() const;
+  std::int64_t phase_steps_before(std::uint64_t round) const;
+  // Share of the phase's rounds that lie before `round`, in [0, 1).
+  double phase_progress(std::uint64_t round) const;
+
+  // The weights that round r is driven with: max(first round of its phase, r - 1). Version 0 and
+  // the BP phase's first version are published before any of the phase's blocks is trained.
+  std::uint64_t weights_version(std::uint64_t round) const;
+
+  // Whether the actors evaluate weights_version(round) greedily before they drive this round: every
+  // selection_every_steps, and in a phase's last round.
+  bool selects_in(std::uint64_t round) const;
+  // Whether the learner takes a checkpoint after block `round`: every checkpoint_every_steps, and
+  // after the last block.
+  bool checkpoints_after(std::uint64_t round) const;
+
+ private:
+  std::int64_t steps_per_round_;
+  std::uint64_t phase_rounds_[kPhases];
+  std::uint64_t selection_every_;   // rounds
+  std::uint64_t checkpoint_every_;  // rounds
+};
+
+}  // namespace corridor

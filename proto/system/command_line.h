@@ -1,0 +1,28 @@
+// What every program's command line does alike. The only user of CLI11.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <optional>
+#include <string>
+
+#include "proto/base/failure.h"
+#include "proto/system/program.h"
+
+namespace corridor {
+
+// Parses, --version included. Returns the exit status where that is all there is to do (--help,
+// --version), else nothing. Throws Failure in one line for what is wrong; `program` is how people
+// call it.
+inline std::optional<int> parse_command_line(CLI::App& app, const std::string& program, int argc,
+                                             const char* const* argv) {
+  app.set_version_flag("--version", kVersion, "print the version");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return app.exit(error);
+    throw Failure("{}; see {} --help", error.what(), program);
+  }
+  return std::nullopt;
+}
+
+}  // namespace corridor

@@ -1,0 +1,70 @@
+// Where a process's time goes: every moment of its main thread belongs to one part. Always on: a
+// charge is one look at the clock, about 25 ns. One thread.
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <cstddef>
+#include <ctime>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "proto/system/pulse.h"
+
+namespace corridor {
+
+// The parts of all processes. Those that wait are not work; the scheduler may also take the core
+// away in any other part, so that shares, not seconds, are what to compare.
+enum class TimePart {
+  kSimulate,        // actor: SUMO's own step
+  kTraffic,         // actor: vehicles enter and leave SUMO, or go blind
+  kWorld,           // actor: placing the ego, reading the vehicles, collisions
+  kLoad,            // actor: SUMO loads an episode
+  kPlan,            // actor: gaps, windows, observations, trajectories, rewards, transitions
+  kInfer,           // actor: forward passes
+  kInsert,          // replay: chunks into the store
+  kSample,          // replay: priorities in, batches out
+  kUpdate,          // learner: forward, backward, optimiser
+  kPublish,         // learner: weights to actors, their outcomes
+  kCheckpoint,      // learner and replay
+  kTransport,       // all: values to bytes and back, sending and receiving
+  kWaitForActors,   // replay, learner
+  kWaitForReplay,   // actor, learner
+  kWaitForLearner,  // actor: for weights; replay: for requests
+};
+inline constexpr std::size_t kTimeParts = 15;
+
+// "simulate", "wait_for_replay".
+const char* time_part_name(TimePart part);
+inline bool is_wait(TimePart part) { return part >= TimePart::kWaitForActors; }
+
+class TimeAccount {
+ public:
+  // What was passed since the last charge, or since the start, was spent on this part.
+  void charge(TimePart part) {
+    const Clock::time_point now = Clock::now();
+    spent_[static_cast<std::size_t>(part)] += now - std::exchange(mark_, now);
+    beat();
+  }
+
+  // Since the last `take`, or since the start.
+  double wall_s() const { return std::chrono::duration<double>(Clock::now() - taken_).count(); }
+
+  // Over wall_s(): "time/<part>", its share of the wall time, of every
+  // part that was ever charged; "time/wall_s"; "time/cpu_s" of the calling thread and
+  // "time/cpu_of_io_s" of all others, ZeroMQ's.
+  std::vector<std::pair<std::string, double>> take();
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  Clock::time_point mark_ = Clock::now();
+  Clock::time_point taken_ = mark_;
+  double thread_cpu_s_ = 0.0;
+  double process_cpu_s_ = 0.0;
+  std::array<Clock::duration, kTimeParts> spent_{};
+  std::array<bool, kTimeParts> known_{};
+};
+
+}  // namespace corridor

@@ -1,0 +1,44 @@
+#include "cluster/watch/step_progress.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "cluster/watch/display.h"
+#include "cluster/watch/line_tail.h"
+#include "tests/support/temporary_directory.h"
+
+namespace corridor::cluster {
+namespace {
+
+using testing::HasSubstr;
+
+TEST(StepProgress, AddsUpWhatTheFilesSay) {
+  testing_support::TemporaryDirectory temporary;
+  const auto first = temporary.path() / "first", second = temporary.path() / "second";
+  StepProgress progress("evaluation",
+                        {{"rules 7", 1000, 0, first, parse_step_count},
+                         {"sumo 7", 1000, 0, second, parse_step_count},
+                         {"keep 7", 2000, 2000, temporary.path() / "none", parse_step_count}});
+  EXPECT_THAT(progress.headline(monotonic_s()), HasSubstr("50.0 %  2,000 of 4,000 steps"));
+  EXPECT_THAT(progress.headline(monotonic_s() + 1.0), Not(HasSubstr("left")))
+      << "nothing was done yet that would tell";
+  EXPECT_EQ(progress.details(), "1 of 3 done");
+
+  std::ofstream(first) << "some noise\n250/1000\n500/1000\n";
+  std::ofstream(second) << "1000/1000\n";
+  progress.tick();
+  EXPECT_THAT(progress.headline(monotonic_s() + 1.0), HasSubstr("87.5 %  3,500 of 4,000 steps"));
+  EXPECT_THAT(progress.headline(monotonic_s() + 1.0), HasSubstr("left"));
+  EXPECT_EQ(progress.details(), "2 of 3 done, rules 7: 50 %");
+}
+
+TEST(StepProgress, OfNothingIsComplete) {
+  EXPECT_THAT(StepProgress("training", {}).headline(monotonic_s()), HasSubstr("100.0 %"));
+  EXPECT_THAT(StepProgress("hindsight", {}, "collisions").headline(monotonic_s()),
+              HasSubstr("0 of 0 collisions"));
+}
+
+}  // namespace
+}  // namespace corridor::cluster

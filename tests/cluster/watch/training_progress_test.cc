@@ -1,0 +1,216 @@
+#include "cluster/watch/training_progress.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "cluster/watch/display.h"
+#include "cluster/watch/line_tail.h"
+#include "proto/run/metrics.h"
+#include "tests/support/temporary_directory.h"
+
+namespace corridor::cluster {
+namespace {
+
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+
+constexpr int kCores = 2;
+
+TEST(MetricsLine, IsReadWithItsPlaceAndAllItsNumbers) {
+  const auto line = parse_metrics_line(
+      R"({"phase":"BP","round":7,"step":3584,"time_s":1.25,"charts/SPS":7000,"eval/x":null})");
+  ASSERT_TRUE(line);
+  EXPECT_EQ(line->phase, "BP");
+  EXPECT_EQ(line->round, 7u);
+  EXPECT_EQ(line->step, 3584);
+  EXPECT_EQ(line->values,
+            (std::map<std::string, double, std::less<>>{{"time_s", 1.25}, {"charts/SPS", 7000.0}}));
+}
+
+TEST(MetricsLine, IsNothingWhenTornOrForeign) {
+  for (const char* text :
+       {"", "{", R"({"phase":"BP","round":7,"step":35)", "[1,2]", "null", "7",
+        R"({"phase":"BP","round":-1,"step":0})", R"({"phase":3,"round":1,"step":0})",
+        R"({"round":1,"step":0})", R"({"phase":"BP","round":1.5,"step":0})", "\xff\xfe"}) {
+    EXPECT_FALSE(parse_metrics_line(text)) << text;
+  }
+}
+
+TEST(StepCount, IsReadFromLinesOfThatFormOnly) {
+  EXPECT_EQ(parse_step_count("1200/40000"), 1200);
+  for (const char* text : {"", "/", "12", "12/", "/40", "12/40 ", "a 12/40", "12/40/7"}) {
+    EXPECT_FALSE(parse_step_count(text)) << text;
+  }
+}
+
+class Files : public testing::Test {
+ protected:
+  void append(const std::string& text) { std::ofstream(file_, std::ios::app) << text; }
+
+  testing_support::TemporaryDirectory temporary_;
+  std::filesystem::path file_ = temporary_.path() / "a.jsonl";
+};
+
+TEST_F(Files, ATailGivesEachLineOnceAndATornOneWhenItIsWhole) {
+  LineTail tail(file_);
+  EXPECT_THAT(tail.read(), IsEmpty());
+  append("one\ntw");
+  EXPECT_THAT(tail.read(), ElementsAre("one"));
+  EXPECT_THAT(tail.read(), IsEmpty());
+  append("o\nthree\n");
+  EXPECT_THAT(tail.read(), ElementsAre("two", "three"));
+}
+
+TEST_F(Files, ATailLeavesOutWhatWasThereBeforeIt) {
+  append("old\n");
+  LineTail tail(file_);
+  append("new\n");
+  EXPECT_THAT(tail.read(), ElementsAre("new"));
+}
+
+TEST_F(Files, ATailBeginsAgainWhenTheFileIsWrittenAnew) {
+  append("a long line\n");
+  LineTail tail(file_);
+  std::ofstream(file_) << "x\n";
+  EXPECT_THAT(tail.read(), ElementsAre("x"));
+}
+
+TEST_F(Files, TheLastWholeMetricsLineIsFoundBehindATornOne) {
+  EXPECT_FALSE(last_metrics_line(file_));
+  for (int round = 0; round < 2000; ++round) {
+    append("{\"phase\":\"MoP\",\"round\":" + std::to_string(round) + ",\"step\":1}\n");
+  }
+  append("{\"phase\":\"MoP\",\"rou");
+  EXPECT_EQ(last_metrics_line(file_)->round, 1999u);
+}
+
+// 10 rounds of MoP and 10 of BP, 2 actors x 100 steps each.
+RunConfig config() {
+  RunConfig config;
+  config.run.actors = 2;
+  config.schedule.steps_per_round = 100;
+  config.dqn[0].steps = 2000;
+  config.dqn[1].steps = 2000;
+  return config;
+}
+
+class Progress : public testing::Test {
+ protected:
+  static MetricsLine line(const char* phase, std::uint64_t round,
+                          std::map<std::string, double, std::less<>> values = {}) {
+    return {phase, round, 0, std::move(values)};
+  }
+  TrainingProgress progress_{config(), 0, kCores, 0.0};
+};
+
+TEST_F(Progress, CountsStepsOverBothPhases) {
+  EXPECT_EQ(progress_.steps_total(), 4000);
+  EXPECT_EQ(progress_.steps_done(), 0);
+  progress_.on_learner(line("MoP", 4), 1.0);
+  EXPECT_EQ(progress_.steps_done(), 1000);
+  progress_.on_learner(line("BP", 19), 3.0);
+  EXPECT_EQ(progress_.steps_done(), 4000);
+}
+
+TEST_F(Progress, ShowsPhaseShareSpeedAndTimeLeft) {
+  progress_.on_learner(line("MoP", 4), 2.0);
+  EXPECT_EQ(progress_.headline(),
+            "MoP [#####...............]  25.0 %  1,000 of 4,000 steps  500 steps/s  6 s left");
+}
+
+TEST_F(Progress, KnowsNoSpeedBeforeTheFirstRound) {
+  EXPECT_EQ(progress_.headline(), "MoP [....................]   0.0 %  0 of 4,000 steps");
+  EXPECT_EQ(progress_.details(), "starting");
+}
+
+TEST_F(Progress, TakesTheSpeedFromTheLastHalfMinute) {
+  progress_.on_learner(line("MoP", 0), 100.0);  // a slow start: 2 steps/s
+  progress_.on_learner(line("MoP", 1), 131.0);
+  progress_.on_learner(line("MoP", 9), 132.0);
+  progress_.on_learner(line("BP", 14), 162.0);
+  // What counts begins at (131 s, 400 steps).
+  EXPECT_NEAR(progress_.steps_per_s(), 2600.0 / 31.0, 1e-9);
+}
+
+TEST_F(Progress, AResumedTrainingBeginsWhereItsCheckpointIs) {
+  TrainingProgress resumed(config(), 12, kCores, 50.0);
+  EXPECT_EQ(resumed.steps_done(), 2400);
+  EXPECT_THAT(resumed.headline(), HasSubstr("BP  [############........]  60.0 %"));
+  resumed.on_learner(line("BP", 12), 51.0);
+  EXPECT_NEAR(resumed.steps_per_s(), 200.0, 1e-9);
+}
+
+TEST_F(Progress, AveragesOverTheActors) {
+  progress_.on_actor(
+      line("MoP", 0, {{"charts/reward_per_1000", 500.0}, {"charts/collisions_per_1000", 2.0}}));
+  progress_.on_actor(
+      line("MoP", 0, {{"charts/reward_per_1000", 700.0}, {"charts/collisions_per_1000", 1.0}}));
+  EXPECT_THAT(progress_.details(), HasSubstr("reward 600, collisions 1.5 per 1000 steps"));
+}
+
+TEST_F(Progress, ForgetsTheFiguresOfThePhaseBefore) {
+  progress_.on_actor(line("MoP", 9, {{"charts/reward_per_1000", 500.0}}));
+  progress_.on_learner(line("BP", 10), 1.0);
+  progress_.on_actor(line("MoP", 9, {{"charts/reward_per_1000", 500.0}}));
+  EXPECT_THAT(progress_.details(), Not(HasSubstr("reward")));
+}
+
+TEST_F(Progress, NamesTheSideThatTheOtherWaitsFor) {
+  const auto lines = [&](double for_actors, double for_weights, double for_replay) {
+    TrainingProgress progress(config(), 0, kCores, 0.0);
+    EXPECT_EQ(progress.lines().size(), 2u);
+    progress.on_learner(
+        line("MoP", 0,
+             {{"time/wait_for_actors", for_actors}, {"time/wait_for_replay", for_replay}}),
+        1.0);
+    progress.on_replay(line("MoP", 0, {{"replay/samples_per_insert", 31.96}}));
+    progress.on_replay(line("BP", 0, {{"replay/samples_per_insert", 1.0}}));
+    progress.on_actor(
+        line("MoP", 0, {{"time/wait_for_learner", for_weights}, {"time/wait_for_replay", 0.01}}));
+    return progress.lines();
+  };
+  EXPECT_THAT(lines(0.4, 0.03, 0.02),
+              ElementsAre(testing::_, "32.0 samples per insert",
+                          "waits: learner 40 % for actors, actors 3 % for weights; "
+                          "bottleneck: the actors"));
+  EXPECT_THAT(lines(0.03, 0.4, 0.02).back(), HasSubstr("bottleneck: the learner"));
+  EXPECT_THAT(lines(0.03, 0.04, 0.3).back(),
+              AllOf(HasSubstr("learner 30 % and actors 1 % for replay"),
+                    HasSubstr("bottleneck: the replay server")));
+  EXPECT_THAT(lines(0.03, 0.04, 0.02).back(), HasSubstr("bottleneck: none"));
+}
+
+TEST_F(Progress, NamesTheCoresWhenTheyAreBusyAndWhatTheyDo) {
+  const auto times = [](const char* part, double share, double cpu_s, double for_others) {
+    return std::map<std::string, double, std::less<>>{{part, share},
+                                                      {"time/wait_for_learner", for_others},
+                                                      {"time/wait_for_actors", for_others},
+                                                      {"time/wall_s", 10.0},
+                                                      {"time/cpu_s", cpu_s},
+                                                      {"time/cpu_of_io_s", 0.0}};
+  };
+  const int actors = config().run.actors;
+  // Two cores, of which the actors keep `busy` and the learner half of one.
+  const auto line_for = [&](double busy) {
+    TrainingProgress progress(config(), 0, 2, 0.0);
+    progress.on_learner(line("MoP", 0, times("time/update", 0.8, 5.0, 0.2)), 1.0);
+    progress.on_actor(line("MoP", 0, times("time/simulate", 0.6, 10.0 * busy / actors, 0.4)));
+    return progress.lines().back();
+  };
+  EXPECT_THAT(line_for(1.5), HasSubstr("bottleneck: the 2 cores: simulate 75 %, update 25 %"));
+  EXPECT_THAT(line_for(0.5), HasSubstr("bottleneck: the learner: update 100 %"));
+}
+
+TEST(ProgressBar, FillsFromTheLeftAndNeverOverflows) {
+  EXPECT_EQ(progress_bar(0.0, 4), "[....]");
+  EXPECT_EQ(progress_bar(0.5, 4), "[##..]");
+  EXPECT_EQ(progress_bar(1.7, 4), "[####]");
+}
+
+}  // namespace
+}  // namespace corridor::cluster

@@ -1,0 +1,159 @@
+#include "proto/run/run_directory.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include <csignal>
+
+#include "proto/base/json.h"
+#include "proto/settings/settings.h"
+#include "proto/system/files.h"
+#include "proto/wire/connect.h"
+#include "tests/support/failure_of.h"
+#include "tests/support/temporary_directory.h"
+
+namespace corridor {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::UnorderedElementsAre;
+
+std::vector<std::string> names_in(const fs::path& directory) {
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator(directory)) {
+    names.push_back(entry.path().filename().string());
+  }
+  return names;
+}
+
+class Files : public testing::Test {
+ protected:
+  testing_support::TemporaryDirectory directory_;
+  fs::path file_ = directory_.path() / "file";
+};
+
+TEST_F(Files, AreWrittenWholeAndReadBack) {
+  const std::string content = std::string("a\0b\n", 4) + std::string(1'000'000, 'x');
+  write_file(file_, content);
+  EXPECT_EQ(read_file(file_), content);
+  write_file(file_, "");
+  EXPECT_EQ(read_file(file_), "");
+  EXPECT_THAT(names_in(directory_.path()), UnorderedElementsAre("file"));
+}
+
+TEST_F(Files, ThatCannotBeWrittenAreNamedWithTheReason) {
+  EXPECT_THAT(failure_of([] { write_file("/nowhere/at/all", "x"); }),
+              AllOf(HasSubstr("/nowhere/at/all"), HasSubstr("No such file")));
+  fs::create_directory(file_);
+  write_file(file_ / "inside", "x");
+  EXPECT_THAT(failure_of([&] { write_file(file_, "x"); }), HasSubstr("directory"));
+  EXPECT_THAT(names_in(directory_.path()), UnorderedElementsAre("file"));
+}
+
+// Writes with a limit on file sizes, which fails in the middle of a file as a full disk does.
+[[noreturn]] void write_beyond_the_limit(const fs::path& file) {
+  std::signal(SIGXFSZ, SIG_IGN);
+  const rlimit limit{1000, 1000};
+  setrlimit(RLIMIT_FSIZE, &limit);
+  const std::string failure = failure_of([&] { write_file(file, std::string(5000, 'n')); });
+  std::fprintf(stderr, "%s\n", failure.c_str());
+  std::exit(failure == "no failure" ? 1 : 0);
+}
+
+TEST_F(Files, AFullDiskLeavesTheOldFileAndNothingBesideIt) {
+  write_file(file_, "old");
+  EXPECT_EXIT(write_beyond_the_limit(file_), testing::ExitedWithCode(0), "File too large");
+  EXPECT_EQ(read_file(file_), "old");
+  EXPECT_THAT(names_in(directory_.path()), UnorderedElementsAre("file"));
+}
+
+TEST_F(Files, ThatCannotBeReadAreNamedWithTheReason) {
+  EXPECT_THAT(failure_of([&] { read_file(file_); }),
+              AllOf(HasSubstr(file_.string()), HasSubstr("No such file")));
+  EXPECT_THAT(failure_of([&] { read_file(directory_.path()); }), HasSubstr("Is a directory"));
+}
+
+TEST_F(Files, OfUnknownSizeAreReadToTheEnd) {
+  EXPECT_THAT(read_file("/proc/self/status"), HasSubstr("VmRSS"));
+}
+
+TEST_F(Files, ThatAreNoJsonAreNamed) {
+  write_file(file_, "{\"a\": 1}");
+  EXPECT_EQ(read_json(file_).at("a"), 1);
+  write_file(file_, "{\"a\": ");
+  EXPECT_THAT(failure_of([&] { read_json(file_); }),
+              AllOf(HasSubstr(file_.string()), HasSubstr("is not JSON")));
+}
+
+class Runs : public testing::Test {
+ protected:
+  RunDirectory create() const { return RunDirectory::create(root_); }
+
+  testing_support::TemporaryDirectory directory_;
+  fs::path root_ = directory_.path() / "runs" / "one";
+};
+
+TEST_F(Runs, AreCreatedOnceWithTheirFolders) {
+  const RunDirectory run = create();
+  for (const fs::path& file : {run.network(), run.log("learner"), run.metrics("actor-0"),
+                               run.evaluation() / "x", run.episodes() / "x"}) {
+    EXPECT_TRUE(fs::is_directory(file.parent_path())) << file;
+  }
+  EXPECT_EQ(run.log("learner"), root_ / "log" / "learner.log");
+  EXPECT_EQ(run.metrics("actor-0"), root_ / "metrics" / "actor-0.jsonl");
+  EXPECT_THAT(failure_of([&] { create(); }),
+              AllOf(HasSubstr(root_.string()), HasSubstr("exists already")));
+}
+
+TEST_F(Runs, ThatCannotBeCreatedAreNamed) {
+  EXPECT_THAT(failure_of([] { RunDirectory::create("/proc/nothing/run"); }),
+              HasSubstr("cannot create /proc/nothing/run"));
+}
+
+TEST_F(Runs, NeedAConfigAndAManifestToBeOpened) {
+  EXPECT_THAT(failure_of([&] { RunDirectory::open(root_); }), HasSubstr("config.toml is missing"));
+  const RunDirectory run = create();
+  write_file(run.config(), "");
+  EXPECT_THAT(failure_of([&] { RunDirectory::open(root_); }),
+              HasSubstr("manifest.json is missing"));
+  write_file(run.manifest(), "{}");
+  EXPECT_EQ(RunDirectory::open(root_).root(), root_);
+}
+
+TEST_F(Runs, TheManifestsRunIdIsChecked) {
+  const RunDirectory run = create();
+  const std::string id = "0123456789abcdef0123456789abcdef";
+  write_file(run.manifest(), R"({"run_id": ")" + id + R"(", "seed": 1})");
+  EXPECT_EQ(read_manifest(run).run_id, id);
+  for (const char* bad : {"{}", "[]", R"({"run_id": 3})", R"({"run_id": "abc"})",
+                          R"({"run_id": "0123456789abcdef0123456789abcdeg"})"}) {
+    write_file(run.manifest(), bad);
+    EXPECT_THAT(failure_of([&] { read_manifest(run); }), HasSubstr("run_id is not 32 hex")) << bad;
+  }
+}
+
+TEST(Addresses, OfTcpAreTheConfiguredPorts) {
+  RunSettings settings;
+  settings.transport = "tcp";
+  settings.host = "node";
+  const Addresses where = addresses(settings, std::string(32, 'a'));
+  EXPECT_EQ(where.replay, "tcp://node:5701");
+  EXPECT_EQ(where.learner, "tcp://node:5702");
+}
+
+TEST(Addresses, OfIpcDifferByRunAndDoNotShowItsId) {
+  const std::string one(32, 'a'), two(32, 'b');
+  const Addresses where = addresses({}, one);
+  EXPECT_THAT(where.replay, testing::StartsWith("ipc://@corridor-"));
+  EXPECT_NE(where.replay, where.learner);
+  EXPECT_NE(where.replay, addresses({}, two).replay);
+  EXPECT_EQ(where.replay, addresses({}, one).replay);
+  EXPECT_EQ(where.replay.find(one.substr(0, 8)), std::string::npos);
+  EXPECT_LT(where.replay.size(), 100U);  // a Unix socket's name has 107
+}
+
+}  // namespace
+}  // namespace corridor

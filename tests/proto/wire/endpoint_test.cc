@@ -1,0 +1,568 @@
+#include "proto/wire/endpoint.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <netdb.h>
+#include <sys/time.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <zmq.hpp>
+
+#include "proto/base/format.h"
+#include "proto/base/random.h"
+#include "tests/support/failure_of.h"
+
+namespace corridor {
+namespace {
+
+using std::chrono::milliseconds;
+using testing::HasSubstr;
+
+const std::string kRun(32, 'a');
+constexpr Duration kSoon{10'000};  // for what must come: reached only by a failing test
+constexpr Duration kBrief{5};
+
+Bytes bytes_of(const std::string& text) {
+  const auto* data = reinterpret_cast<const std::byte*>(text.data());
+  return {data, data + text.size()};
+}
+std::string text_of(ByteView bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+Address fresh_address() {
+  static int count = 0;
+  return fmt::format("ipc://@corridor-test-{}-{}", getpid(), count++);
+}
+
+ClientIdentity actor(std::uint32_t index, std::uint64_t incarnation = 1) {
+  return {kRun, Role::kActor, index, incarnation};
+}
+
+ClientLimits quick() { return {.resend_after = kBrief, .peer_timeout = kSoon, .window = 8}; }
+
+// A client without manners: sends what the test says.
+class RawClient {
+ public:
+  explicit RawClient(const Address& address) {
+    socket_.set(zmq::sockopt::linger, 0);
+    socket_.set(zmq::sockopt::rcvtimeo, static_cast<int>(kSoon.count()));
+    socket_.connect(address);
+  }
+  void send_frames(const std::vector<Bytes>& frames) {
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+      socket_.send(zmq::buffer(frames[i]),
+                   i + 1 < frames.size() ? zmq::send_flags::sndmore : zmq::send_flags::none);
+    }
+  }
+  void request(std::uint64_t sequence, const std::string& body, std::uint64_t incarnation = 1) {
+    send_frames({encode(header(sequence, incarnation)), bytes_of(body)});
+  }
+  static Header header(std::uint64_t sequence, std::uint64_t incarnation = 1) {
+    Header result;
+    result.run_id = kRun;
+    result.incarnation = incarnation;
+    result.sequence = sequence;
+    return result;
+  }
+  std::pair<Header, std::string> receive() {
+    zmq::message_t head, body;
+    if (!socket_.recv(head) || !socket_.recv(body)) throw std::runtime_error("no answer");
+    return {decode_header({static_cast<const std::byte*>(head.data()), head.size()}),
+            body.to_string()};
+  }
+
+ private:
+  zmq::context_t context_;
+  zmq::socket_t socket_{context_, zmq::socket_type::dealer};
+};
+
+TEST(Endpoint, ARequestIsAnswered) {
+  const Address address = fresh_address();
+  Server server(address, kRun);
+  Client client(address, "server", actor(3, 77), {});
+  EXPECT_EQ(client.send(bytes_of("question")), 1U);
+  EXPECT_EQ(client.unanswered(), 1U);
+  const auto request = server.receive(kSoon);
+  ASSERT_TRUE(request);
+  EXPECT_EQ(text_of(request->body), "question");
+  EXPECT_EQ(request->client, (ClientId{Role::kActor, 3}));
+  EXPECT_EQ(request->incarnation, 77U);
+  server.reply(*request, bytes_of("answer"));
+  EXPECT_EQ(text_of(client.receive(kSoon).value()), "answer");
+  EXPECT_EQ(client.unanswered(), 0U);
+  EXPECT_EQ(server.dropped(), 0U);
+}
+
+TEST(Endpoint, EmptyAndLargeBodiesPass) {
+  const Address address = fresh_address();
+  Server server(address, kRun);
+  Client client(address, "server", actor(0), {});
+  for (const std::size_t size : {std::size_t{0}, std::size_t{1}, std::size_t{20'000'000}}) {
+    client.send(Bytes(size, std::byte{7}));
+    const auto request = server.receive(kSoon);
+    ASSERT_TRUE(request);
+    EXPECT_EQ(text_of(request->body), std::string(size, '\7'));
+    server.reply(*request, bytes_of(text_of(request->body)));
+    EXPECT_EQ(text_of(client.receive(kSoon).value()), std::string(size, '\7'));
+  }
+}
+
+TEST(Endpoint, NothingComesWithinThePatienceIsNoError) {
+  const Address address = fresh_address();
+  Server server(address, kRun);
+  Client client(address, "server", actor(0), {});
+  EXPECT_FALSE(server.receive(kBrief));
+  client.send({});
+  EXPECT_FALSE(client.receive(kBrief));
+}
+
+TEST(Endpoint, PipelinedAnswersComeInTheOrderOfTheRequestsWhateverTheServersOrder) {
+  const Address address = fresh_address();
+  Server server(address, kRun);
+  Client client(address, "server", actor(0), {});
+  std::vector<IncomingRequest> requests;
+  for (int i = 0; i < 8; ++i) client.send(bytes_of(std::to_string(i)));
+  for (int i = 0; i < 8; ++i) {
+    requests.push_back(server.receive(kSoon).value());
+    EXPECT_EQ(text_of(requests.back().body), std::to_string(i));
+  }
+  for (int i = 7; i >= 0; --i)
+    server.reply(requests[static_cast<std::size_t>(i)], bytes_of(fmt::format("r{}", i)));
+  for (int i = 0; i < 8; ++i)
+    EXPECT_EQ(text_of(client.receive(kSoon).value()), fmt::format("r{}", i));
+}
+
+TEST(Endpoint, ClientsDoNotGetEachOthersAnswers) {
+  const Address address = fresh_address();
+  Server server(address, kRun);
+  Client one(address, "server", actor(1), {});
+  Client two(address, "server", actor(2), {});
+  Client learner(address, "server", {kRun, Role::kLearner, 1, 1}, {});
+  one.send(bytes_of("1"));
+  two.send(bytes_of("2"));
+  learner.send(bytes_of("L"));
+  std::vector<IncomingRequest> requests;
+  for (int i = 0; i < 3; ++i) requests.push_back(server.receive(kSoon).value());
+  for (const auto& request : requests) server.reply(request, bytes_of(text_of(request.body)));
+  EXPECT_EQ(text_of(one.receive(kSoon).value()), "1");
+  EXPECT_EQ(text_of(two.receive(kSoon).value()), "2");
+  EXPECT_EQ(text_of(learner.receive(kSoon).value()), "L");
+}
+
+TEST(Endpoint, ARepeatedRequestIsCarriedOutOnceAndAnsweredAgain) {
+  const Address address = fresh_address();
+  Server server(address, kRun);
+  RawClient raw(address);
+  raw.request(1, "a");
+  raw.request(1, "a");
+  raw.request(2, "b");
+  const auto first = server.receive(kSoon);
+  const auto second = server.receive(kSoon);
+  ASSERT_TRUE(first && second);
+  EXPECT_EQ(second->sequence, 2U);
+  const auto pending = raw.receive();
+  EXPECT_EQ(pending.first.kind, MessageKind::kPending);
+  EXPECT_EQ(pending.first.sequence, 1U);
+
+  server.reply(*first, bytes_of("A"));
+  EXPECT_EQ(raw.receive().second, "A");
+  raw.request(1, "a");
+  raw.request(3, "c");
+  EXPECT_EQ(server.receive(kSoon)->sequence, 3U);
+  const auto again = raw.receive();
+  EXPECT_EQ(again.first.kind, MessageKind::kReply);
+  EXPECT_EQ(again.first.sequence, 1U);
+  EXPECT_EQ(again.second, "A");
+  EXPECT_EQ(server.dropped(), 0U);
+}
+
+TEST(Endpoint, RequestsAheadOfALostOneWaitForItsRepetition) {
+  const Address address = fresh_address();
+  Server server(address, kRun);
+  RawClient raw(address);
+  for (const std::uint64_t sequence : {1, 3, 4, 2, 3, 4}) {
+    raw.request(sequence, std::to_string(sequence));
+  }
+  for (std::uint64_t sequence = 1; sequence <= 4; ++sequence) {
+    EXPECT_EQ(text_of(server.receive(kSoon)->body), std::to_string(sequence));
+  }
+}
+
+// A link between a client and a server that loses and repeats messages, by chance.
+class FlakyLink {
+ public:
+  FlakyLink(const Address& front, const Address& back) {
+    front_.set(zmq::sockopt::linger, 0);
+    back_.set(zmq::sockopt::linger, 0);
+    front_.bind(front);
+    back_.connect(back);
+  }
+  // Passes on what is there.
+  void pump() {
+    while (auto frames = take(front_)) {
+      route_ = frames->at(0).to_string();
+      frames->erase(frames->begin());
+      for (int i = copies(); i > 0; --i) put(back_, *frames);
+    }
+    while (auto frames = take(back_)) {
+      frames->insert(frames->begin(), zmq::message_t(route_));
+      for (int i = copies(); i > 0; --i) put(front_, *frames);
+    }
+  }
+
+ private:
+  using Frames = std::vector<zmq::message_t>;
+  int copies() {
+    const double draw = random_unit(5, Purpose::kWireDelay, {draws_++});
+    return draw < 0.3 ? 0 : draw < 0.5 ? 2 : 1;
+  }
+  static std::optional<Frames> take(zmq::socket_t& socket) {
+    Frames frames;
+    do {
+      frames.emplace_back();
+      if (!socket.recv(frames.back(), zmq::recv_flags::dontwait)) return std::nullopt;
+    } while (frames.back().more());
+    return frames;
+  }
+  static void put(zmq::socket_t& socket, const Frames& frames) {
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+      socket.send(zmq::buffer(frames[i].data(), frames[i].size()),
+                  i + 1 < frames.size() ? zmq::send_flags::sndmore : zmq::send_flags::none);
+    }
+  }
+
+  zmq::context_t context_;
+  zmq::socket_t front_{context_, zmq::socket_type::router};
+  zmq::socket_t back_{context_, zmq::socket_type::dealer};
+  std::string route_;
+  std::uint64_t draws_ = 0;
+};
+
+TEST(Endpoint, EachRequestIsCarriedOutOnceAndInOrderOverALinkThatLosesAndRepeats) {
+  const Address front = fresh_address();
+  const Address back = fresh_address();
+  Server server(back, kRun);
+  FlakyLink link(front, back);
+  Client client(front, "server", actor(0), quick());
+  const std::uint64_t total = 300;
+  std::uint64_t sent = 0, served = 0, answered = 0;
+  // The first alone, as every client's `join`: it tells the server that this client is new.
+  while (answered < total) {
+    const std::size_t window = answered == 0 ? 1 : 8;
+    while (client.unanswered() < window && sent < total) {
+      ++sent;
+      client.send(bytes_of(std::to_string(sent)));
+    }
+    link.pump();
+    while (const auto request = server.receive(Duration::zero())) {
+      ASSERT_EQ(text_of(request->body), std::to_string(++served));
+      server.reply(*request, bytes_of(text_of(request->body)));
+    }
+    link.pump();
+    if (const auto answer = client.receive(Duration(1))) {
+      ASSERT_EQ(text_of(*answer), std::to_string(++answered));
+    }
+  }
+  EXPECT_EQ(served, total);
+}
+
+TEST(Endpoint, GarbageIsDroppedAndCountedAndOthersAreServed) {
+  const Address address = fresh_address();
+  Server server(address, kRun);
+  RawClient raw(address);
+  std::uint64_t garbage = 0;
+  for (std::uint64_t round = 0; round < 200; ++round, ++garbage) {
+    std::vector<Bytes> frames(1 + round % 6);
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+      frames[i].resize(random_below(200, 3, Purpose::kWireDelay, {round, i}));
+      for (std::size_t j = 0; j < frames[i].size(); ++j) {
+        frames[i][j] = static_cast<std::byte>(random_bits(3, Purpose::kWireDelay, {round, i, j}));
+      }
+    }
+    raw.send_frames(frames);
+  }
+  Header reply = RawClient::header(1);
+  reply.kind = MessageKind::kReply;
+  raw.send_frames({encode(reply), {}});
+  raw.send_frames({encode(RawClient::header(0)), {}});
+  raw.send_frames({encode(RawClient::header(1)), {}, {}});
+  raw.request(1, "good");
+  EXPECT_EQ(text_of(server.receive(kSoon)->body), "good");
+  EXPECT_EQ(server.dropped(), garbage + 3);
+}
+
+TEST(Endpoint, ForeignProtocolsAndRunsAreRefusedAndToldWhy) {
+  const Address address = fresh_address();
+  Server server(address, kRun);
+  RawClient raw(address);
+  Header header = RawClient::header(1);
+  header.protocol = 99;
+  raw.send_frames({encode(header), {}});
+  header = RawClient::header(1);
+  header.run_id = std::string(32, 'b');
+  raw.send_frames({encode(header), {}});
+  EXPECT_FALSE(server.receive(Duration(100)));
+  EXPECT_EQ(server.dropped(), 2U);
+  EXPECT_THAT(raw.receive().first.refusal,
+              HasSubstr(fmt::format("protocol {}, you 99", kProtocolVersion)));
+  EXPECT_THAT(raw.receive().first.refusal, HasSubstr("another run"));
+}
+
+TEST(Endpoint, ARefusedClientEndsWithTheServersText) {
+  const Address address = fresh_address();
+  Server server(address, kRun);
+  Client client(address, "replay server", actor(0), {});
+  client.send(bytes_of("?"));
+  server.refuse(server.receive(kSoon).value(), "no such thing");
+  EXPECT_EQ(failure_of([&] { client.receive(kSoon); }),
+            "replay server at " + address + " refused: no such thing");
+}
+
+TEST(Endpoint, AnUndecodableBodyIsCountedAndRefused) {
+  const Address address = fresh_address();
+  Server server(address, kRun);
+  Client client(address, "server", actor(0), {});
+  client.send(bytes_of("?"));
+  server.reject_malformed(server.receive(kSoon).value(), std::string(1000, 'x'));
+  EXPECT_EQ(server.dropped(), 1U);
+  EXPECT_THAT(failure_of([&] { client.receive(kSoon); }), HasSubstr("malformed request: xxx"));
+}
+
+TEST(Endpoint, ANewIncarnationTakesThePlaceOfTheOld) {
+  const Address address = fresh_address();
+  Server server(address, kRun);
+  RawClient old_one(address), new_one(address);
+  old_one.request(1, "old", 5);
+  const auto old_request = server.receive(kSoon);
+  new_one.request(1, "new", 6);
+  const auto new_request = server.receive(kSoon);
+  ASSERT_TRUE(old_request && new_request);
+  EXPECT_EQ(text_of(new_request->body), "new");
+
+  server.reply(*old_request, bytes_of("for the old"));  // dropped
+  server.reply(*new_request, bytes_of("for the new"));
+  EXPECT_EQ(new_one.receive().second, "for the new");
+
+  old_one.request(2, "late", 5);
+  new_one.request(2, "next", 6);
+  // Between two connections there is no order.
+  while (server.dropped() == 0) server.receive(kBrief);
+  const auto refused = old_one.receive();
+  EXPECT_EQ(refused.first.kind, MessageKind::kRefused);
+  EXPECT_THAT(refused.first.refusal, HasSubstr("newer process"));
+}
+
+TEST(Endpoint, AClientLearnsThatItsServerHasRestarted) {
+  const Address address = fresh_address();
+  auto server = std::make_unique<Server>(address, kRun);
+  Client client(address, "learner", actor(0), quick());
+  client.send({});
+  server->reply(server->receive(kSoon).value(), {});
+  ASSERT_TRUE(client.receive(kSoon));
+  server.reset();
+  server = std::make_unique<Server>(address, kRun);
+  client.send({});
+  const std::string failure = failure_of([&] {
+    for (int i = 0; i < 2000; ++i) {
+      EXPECT_FALSE(server->receive(kBrief));
+      client.receive(kBrief);
+    }
+  });
+  EXPECT_THAT(failure, HasSubstr("learner at " + address + " refused: it has restarted"));
+}
+
+TEST(Endpoint, AServerThatStartsLaterIsFound) {
+  const Address address = fresh_address();
+  Client client(address, "server", actor(0), quick());
+  client.send(bytes_of("early"));
+  EXPECT_FALSE(client.receive(kBrief));
+  Server server(address, kRun);
+  std::optional<IncomingRequest> request;
+  for (int i = 0; i < 2000 && !request; ++i) {
+    EXPECT_FALSE(client.receive(kBrief));
+    request = server.receive(kBrief);
+  }
+  ASSERT_TRUE(request);
+  EXPECT_EQ(text_of(request->body), "early");
+}
+
+TEST(Endpoint, ASilentPeerIsLostAfterTheTimeout) {
+  const Address address = fresh_address();
+  Client client(address, "replay server", actor(0),
+                {.resend_after = Duration(10), .peer_timeout = Duration(50), .window = 8});
+  client.send({});
+  EXPECT_EQ(failure_of([&] { client.receive(kSoon); }),
+            "replay server at " + address +
+                " has been silent for 0.05 s: it has ended or cannot be reached");
+}
+
+TEST(Endpoint, AServerThatMakesAClientWaitIsNotLost) {
+  const Address address = fresh_address();
+  Server server(address, kRun);
+  const Duration timeout(400);
+  Client client(address, "server", actor(0),
+                {.resend_after = Duration(2), .peer_timeout = timeout, .window = 8});
+  client.send({});
+  const auto parked = server.receive(kSoon);
+  const auto end = std::chrono::steady_clock::now() + 2 * timeout;
+  while (std::chrono::steady_clock::now() < end) {
+    ASSERT_FALSE(client.receive(Duration(4)));
+    ASSERT_FALSE(server.receive(Duration(1)));
+  }
+  server.reply(parked.value(), bytes_of("at last"));
+  EXPECT_EQ(text_of(client.receive(kSoon).value()), "at last");
+}
+
+TEST(Endpoint, AnAddressInUseIsAFailure) {
+  const Address ipc = fresh_address();
+  Server first(ipc, kRun);
+  EXPECT_THAT(failure_of([&] { Server second(ipc, kRun); }),
+              testing::AllOf(HasSubstr(ipc), HasSubstr("another process listens there")));
+
+  zmq::context_t context;
+  zmq::socket_t other(context, zmq::socket_type::router);
+  other.bind("tcp://127.0.0.1:*");
+  const Address tcp = other.get(zmq::sockopt::last_endpoint);
+  EXPECT_THAT(failure_of([&] { Server second(tcp, kRun); }),
+              testing::AllOf(HasSubstr(tcp), HasSubstr("another process listens there")));
+}
+
+TEST(Endpoint, WhatIsNoAddressIsAFailure) {
+  for (const char* bad :
+       {"", "nonsense", "tcp://", "tcp://127.0.0.1", "tcp://192.0.2.1:5701", "smoke://signal"}) {
+    EXPECT_THAT(failure_of([&] { Server server(bad, kRun); }), HasSubstr("cannot listen at"))
+        << bad;
+  }
+  EXPECT_THAT(failure_of([&] { Client client("nonsense", "server", actor(0), {}); }),
+              HasSubstr("nonsense is no address"));
+}
+
+TEST(Endpoint, HostNamesWorkOverTcp) {
+  addrinfo* found = nullptr;
+  if (getaddrinfo("localhost", nullptr, nullptr, &found) != 0) {
+    GTEST_SKIP() << "this machine has no name for itself (localhost in /etc/hosts)";
+  }
+  freeaddrinfo(found);
+  zmq::context_t context;
+  Address address;
+  {
+    zmq::socket_t probe(context, zmq::socket_type::router);
+    probe.bind("tcp://127.0.0.1:*");
+    const Address bound = probe.get(zmq::sockopt::last_endpoint);
+    address = "tcp://localhost" + bound.substr(bound.rfind(':'));
+  }
+  context.close();
+  Server server(address, kRun);
+  Client client(address, "server", actor(0), quick());
+  client.send(bytes_of("over tcp"));
+  std::optional<IncomingRequest> request;
+  for (int i = 0; i < 2000 && !request; ++i) {
+    request = server.receive(kBrief);
+    client.receive(Duration::zero());
+  }
+  ASSERT_TRUE(request);
+  server.reply(*request, bytes_of("too"));
+  EXPECT_EQ(text_of(client.receive(kSoon).value()), "too");
+}
+
+TEST(Endpoint, AMessageOfAbsurdSizeClosesItsConnectionOnly) {
+  const Address address = fresh_address();
+  Server server(address, kRun, {.window = 8, .clients = 8, .message_bytes = 1000});
+  Client greedy(address, "server", actor(0),
+                {.resend_after = Duration(20), .peer_timeout = Duration(100), .window = 8});
+  Client modest(address, "server", actor(1), {});
+  greedy.send(Bytes(100'000));
+  modest.send(Bytes(100));
+  const auto request = server.receive(kSoon);
+  ASSERT_TRUE(request);
+  EXPECT_EQ(request->client.index, 1U);
+  EXPECT_THAT(failure_of([&] { greedy.receive(kSoon); }), HasSubstr("silent"));
+  EXPECT_FALSE(server.receive(Duration::zero()));
+}
+
+TEST(Endpoint, TooManyUnansweredRequestsAreRefused) {
+  const Address address = fresh_address();
+  Server server(address, kRun, {.window = 2, .clients = 8});
+  RawClient raw(address);
+  for (std::uint64_t sequence = 1; sequence <= 3; ++sequence) raw.request(sequence, "");
+  EXPECT_TRUE(server.receive(kSoon));
+  EXPECT_TRUE(server.receive(kSoon));
+  while (server.dropped() == 0) EXPECT_FALSE(server.receive(kBrief));
+  EXPECT_THAT(raw.receive().first.refusal, HasSubstr("more than 2 unanswered"));
+}
+
+TEST(Endpoint, TooManyClientsAreRefused) {
+  const Address address = fresh_address();
+  Server server(address, kRun, {.window = 8, .clients = 1});
+  RawClient raw(address);
+  raw.request(1, "");
+  Header other = RawClient::header(1);
+  other.index = 1;
+  raw.send_frames({encode(other), {}});
+  EXPECT_TRUE(server.receive(kSoon));
+  while (server.dropped() == 0) EXPECT_FALSE(server.receive(kBrief));
+  EXPECT_THAT(raw.receive().first.refusal, HasSubstr("1 clients already"));
+}
+
+TEST(Endpoint, AServerThatAnswersNonsenseIsAFailure) {
+  const std::vector<std::vector<Bytes>> nonsense = {
+      {bytes_of("x")},
+      {bytes_of("not a header"), {}},
+      {encode(RawClient::header(1)), {}, {}},
+      {encode(RawClient::header(1)), {}},  // a request
+  };
+  for (const auto& frames : nonsense) {
+    const Address address = fresh_address();
+    zmq::context_t context;
+    zmq::socket_t router(context, zmq::socket_type::router);
+    router.set(zmq::sockopt::linger, 0);
+    router.set(zmq::sockopt::rcvtimeo, static_cast<int>(kSoon.count()));
+    router.bind(address);
+    Client client(address, "server", actor(0), {});
+    client.send({});
+    zmq::message_t route, frame;
+    ASSERT_TRUE(router.recv(route));
+    while (router.get(zmq::sockopt::rcvmore)) ASSERT_TRUE(router.recv(frame));
+    router.send(route, zmq::send_flags::sndmore);
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+      router.send(zmq::buffer(frames[i]),
+                  i + 1 < frames.size() ? zmq::send_flags::sndmore : zmq::send_flags::none);
+    }
+    EXPECT_THAT(failure_of([&] { client.receive(kSoon); }), HasSubstr("nonsense"));
+  }
+}
+
+TEST(Endpoint, ASignalEndsTheWaitEarly) {
+  const Address address = fresh_address();
+  Server server(address, kRun);
+  struct sigaction action {
+  }, previous{};
+  action.sa_handler = [](int) {};
+  sigaction(SIGALRM, &action, &previous);
+  // Again and again, so that one before the wait does no harm.
+  const itimerval every{{0, 10'000}, {0, 10'000}};
+  setitimer(ITIMER_REAL, &every, nullptr);
+  const auto start = std::chrono::steady_clock::now();
+  EXPECT_FALSE(server.receive(kSoon));
+  EXPECT_LT(std::chrono::steady_clock::now() - start, kSoon / 2);
+  const itimerval never{};
+  setitimer(ITIMER_REAL, &never, nullptr);
+  sigaction(SIGALRM, &previous, nullptr);
+}
+
+TEST(EndpointDeathTest, MisuseIsABug) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  const Address address = fresh_address();
+  EXPECT_DEATH(
+      {
+        Client client(address, "server", actor(0), {.window = 1});
+        client.send({});
+        client.send({});
+      },
+      "window 1");
+}
+
+}  // namespace
+}  // namespace corridor
