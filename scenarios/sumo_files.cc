@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "proto/base/failure.h"
-#include "proto/run/run_directory.h"
 #include "proto/system/files.h"
 #include "proto/system/subprocess.h"
 

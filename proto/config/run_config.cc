@@ -12,7 +12,6 @@
 #include "proto/config/config_checks.h"
 #include "proto/config/config_keys.h"
 #include "proto/config/toml_text.h"
-#include "proto/run/run_directory.h"
 #include "proto/system/files.h"
 
 namespace corridor {
