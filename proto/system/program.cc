@@ -30,6 +30,8 @@ int report_error(const std::string& name, const char* text) {
 
 }  // namespace
 
+const char* const kVersion = CORRIDOR_VERSION;
+
 int run_program(const std::string& name, const std::function<int()>& body) {
   try {
     start_log(name);

@@ -6,7 +6,8 @@
 
 namespace corridor {
 
-inline constexpr const char* kVersion = "0.1.0";
+// "major.minor.patch", as CMakeLists.txt has it.
+extern const char* const kVersion;
 
 // Runs `body` and returns the process's exit status: body's own; where that is 0 and a signal asked
 // to stop, 128 + the signal, so that whoever started the process knows that it may not be done; or

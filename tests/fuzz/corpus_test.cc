@@ -4,7 +4,6 @@
 #include <filesystem>
 
 #include "proto/system/files.h"
-#include "proto/system/files.h"
 #include "tests/fuzz/targets.h"
 
 namespace corridor::fuzz {
