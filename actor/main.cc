@@ -16,7 +16,9 @@
 #include "proto/run/networks.h"
 #include "proto/run/run_directory.h"
 #include "proto/system/command_line.h"
+#include "proto/system/identity.h"
 #include "proto/system/program.h"
+#include "proto/system/test_delay.h"
 #include "proto/system/time_account.h"
 
 namespace {
@@ -124,7 +126,9 @@ int run(const Arguments& arguments) {
   if (arguments.index < 0 || arguments.index >= config.run.actors) {
     throw Failure("--index {} is none of the run's {} actors", arguments.index, config.run.actors);
   }
-  actor::train(config, directory, arguments.index, world, time);
+  const ClientIdentity identity{read_manifest(directory).run_id, Role::kActor,
+                                static_cast<std::uint32_t>(arguments.index), draw_incarnation()};
+  actor::train(config, directory, identity, world, time, test_delay());
   return 0;
 }
 

@@ -1,13 +1,10 @@
 #include "actor/rounds.h"
 
 #include <algorithm>
-#include <chrono>
 #include <optional>
-#include <thread>
 
 #include "actor/rollout.h"
 #include "proto/base/failure.h"
-#include "proto/base/random.h"
 #include "proto/run/metrics.h"
 #include "proto/settings/schedule.h"
 #include "proto/system/log.h"
@@ -34,22 +31,23 @@ std::optional<Body> answer(Client& client) {
 
 class Trainer {
  public:
-  Trainer(const RunConfig& config, const RunDirectory& directory, int actor, world::World& world,
-          TimeAccount& time)
+  Trainer(const RunConfig& config, const RunDirectory& directory, const ClientIdentity& identity,
+          world::World& world, TimeAccount& time, const TestDelay& delay)
       : config_(config),
-        actor_(actor),
+        actor_(static_cast<int>(identity.index)),
         world_(world),
         time_(time),
+        delay_(delay),
         schedule_(config),
-        metrics_(directory.metrics(fmt::format("actor-{}", actor))),
-        replay_(make_client(directory, true)),
-        learner_(make_client(directory, false)) {}
+        metrics_(directory.metrics(fmt::format("actor-{}", actor_))),
+        replay_(connect_to_replay(config.run, identity)),
+        learner_(connect_to_learner(config.run, identity)) {}
 
   void run() {
     replay_.send(encode(ReplayRequest(Join{})));
     const auto body = answer(replay_);
     if (!body) return;
-    const auto joined = expect<Joined>(decode_replay_reply(*body), "replay server");
+    const auto joined = expect<Joined>(*body, decode_replay_reply, "replay server");
     log_info("joins at round {} of {}", joined.next_round, schedule_.rounds());
     OpenEpisode open = joined.open;
     for (std::uint64_t round = joined.next_round; round < schedule_.rounds(); ++round) {
@@ -64,19 +62,6 @@ class Trainer {
   }
 
  private:
-  Client make_client(const RunDirectory& directory, bool replay) const {
-    const std::string run_id = read_manifest(directory).run_id;
-    const Addresses where = addresses(config_.run, run_id);
-    const auto started = std::chrono::system_clock::now().time_since_epoch();
-    ClientLimits limits;
-    limits.peer_timeout = Duration(static_cast<std::int64_t>(config_.run.peer_timeout_s * 1000.0));
-    return Client(replay ? where.replay : where.learner, replay ? "replay server" : "learner",
-                  {run_id, Role::kActor, static_cast<std::uint32_t>(actor_),
-                   static_cast<std::uint64_t>(
-                       std::chrono::duration_cast<std::chrono::nanoseconds>(started).count())},
-                  limits);
-  }
-
   // False when the process is asked to stop.
   bool drive_round(std::uint64_t round) {
     if (!fetch_weights(schedule_.weights_version(round))) return false;
@@ -85,13 +70,13 @@ class Trainer {
       // Noted before the round's chunk goes out: where the chunk is known, so is the outcome.
       const auto body = answer(learner_);
       if (!body) return false;
-      expect<Noted>(decode_learner_reply(*body), "learner");
+      expect<Noted>(*body, decode_learner_reply, "learner");
       time_.charge(TimePart::kWaitForLearner);
     }
     ask_for_weights_of(round + 1);
     time_.charge(TimePart::kTransport);
     const Insert chunk = rollout_->drive_round(weights_);
-    delay(round);
+    delay_();
 
     // One chunk may be under way while the next is driven, not two.
     const Body body = encode(ReplayRequest(chunk));
@@ -122,7 +107,7 @@ class Trainer {
       const auto body = answer(learner_);
       if (!body) return false;
       time_.charge(TimePart::kWaitForLearner);
-      weights_ = expect<Weights>(decode_learner_reply(*body), "learner");
+      weights_ = expect<Weights>(*body, decode_learner_reply, "learner");
       check_weights();
       have_ = version;
     }
@@ -144,14 +129,6 @@ class Trainer {
       if (!answer(client)) return false;
     }
     return true;
-  }
-
-  void delay(std::uint64_t round) const {
-    if (config_.run.delay_ms_max <= 0.0) return;
-    const double share = random_unit(config_.run.seed, Purpose::kWireDelay,
-                                     {static_cast<std::uint64_t>(actor_) + 10, round});
-    std::this_thread::sleep_for(
-        std::chrono::duration<double, std::milli>(share * config_.run.delay_ms_max));
   }
 
   void report(std::uint64_t round) {
@@ -183,6 +160,7 @@ class Trainer {
   int actor_;
   world::World& world_;
   TimeAccount& time_;
+  const TestDelay& delay_;
   Schedule schedule_;
   MetricsWriter metrics_;
   Client replay_;
@@ -196,9 +174,9 @@ class Trainer {
 
 }  // namespace
 
-void train(const RunConfig& config, const RunDirectory& directory, int actor, world::World& world,
-           TimeAccount& time) {
-  Trainer(config, directory, actor, world, time).run();
+void train(const RunConfig& config, const RunDirectory& directory, const ClientIdentity& identity,
+           world::World& world, TimeAccount& time, const TestDelay& delay) {
+  Trainer(config, directory, identity, world, time, delay).run();
 }
 
 }  // namespace corridor::actor

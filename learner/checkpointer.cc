@@ -8,8 +8,12 @@
 
 namespace corridor::learner {
 
-Checkpointer::Checkpointer(const RunConfig& config, Checkpoints checkpoints, ReplayClient& replay)
-    : config_(config), checkpoints_(std::move(checkpoints)), replay_(replay) {}
+Checkpointer::Checkpointer(const RunConfig& config, Checkpoints checkpoints, ReplayClient& replay,
+                           Clock clock)
+    : config_(config),
+      checkpoints_(std::move(checkpoints)),
+      replay_(replay),
+      clock_(std::move(clock)) {}
 
 Checkpointer::~Checkpointer() {
   replay_saved_ = {};  // a broken promise: its thread, if it waits, gives up
@@ -18,7 +22,7 @@ Checkpointer::~Checkpointer() {
 
 void Checkpointer::begin(const LearnerState& state) {
   CORRIDOR_CHECK(!busy(), "round {}", round_);
-  begun_ = Clock::now();
+  begun_ = clock_();
   round_ = state.next_round - 1;
   previous_ = checkpoints_.newest().value_or("").string();
   directory_ = checkpoints_.begin(round_);
@@ -34,7 +38,7 @@ void Checkpointer::begin(const LearnerState& state) {
         checkpoints.commit(round, kept);
       });
   ask_replay();  // now: what it holds now is what it saves
-  training_waited_ = Clock::now() - begun_;
+  training_waited_ = clock_() - begun_;
 }
 
 void Checkpointer::ask_replay() {
@@ -45,15 +49,14 @@ void Checkpointer::ask_replay() {
 
 void Checkpointer::advance() {
   if (!busy()) return;
-  const Clock::time_point start = Clock::now();
+  const TimePoint start = clock_();
   ask_replay();
-  training_waited_ += Clock::now() - start;
+  training_waited_ += clock_() - start;
   if (writing_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
   writing_.get();
-  using Seconds = std::chrono::duration<double>;
   log_info(
       "checkpoint after block {}: complete after {:.2f} s, for which training waited {:.1f} ms",
-      round_, Seconds(Clock::now() - begun_).count(), 1000.0 * Seconds(training_waited_).count());
+      round_, in_seconds(clock_() - begun_), 1000.0 * in_seconds(training_waited_));
 }
 
 }  // namespace corridor::learner

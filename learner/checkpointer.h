@@ -2,7 +2,6 @@
 // disk does so in threads, the learner's and the replay server's. One checkpoint at a time.
 #pragma once
 
-#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <future>
@@ -12,13 +11,15 @@
 #include "learner/replay_client.h"
 #include "proto/run/checkpoints.h"
 #include "proto/settings/settings.h"
+#include "proto/system/clock.h"
 
 namespace corridor::learner {
 
 class Checkpointer {
  public:
   // `replay` outlives it.
-  Checkpointer(const RunConfig& config, Checkpoints checkpoints, ReplayClient& replay);
+  Checkpointer(const RunConfig& config, Checkpoints checkpoints, ReplayClient& replay,
+               Clock clock = steady_now);
   // Waits for its thread. A checkpoint that is not complete never will be.
   ~Checkpointer();
   Checkpointer(const Checkpointer&) = delete;
@@ -36,11 +37,10 @@ class Checkpointer {
  private:
   void ask_replay();
 
-  using Clock = std::chrono::steady_clock;
-
   const RunConfig& config_;
   Checkpoints checkpoints_;
   ReplayClient& replay_;
+  const Clock clock_;
 
   // Of the one under way.
   std::uint64_t round_ = 0;
@@ -49,8 +49,8 @@ class Checkpointer {
   std::promise<void> replay_saved_;
   bool replay_is_saved_ = false;
   std::future<void> writing_;
-  Clock::time_point begun_;
-  Clock::duration training_waited_{0};
+  TimePoint begun_;
+  TimePoint::duration training_waited_{0};
 };
 
 }  // namespace corridor::learner

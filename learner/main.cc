@@ -1,5 +1,4 @@
 // corridor-learner RUN_DIRECTORY: trains a run's planners and publishes their weights.
-#include <chrono>
 #include <string>
 
 #include "learner/blas.h"
@@ -13,8 +12,10 @@
 #include "proto/run/run_directory.h"
 #include "proto/system/command_line.h"
 #include "proto/system/files.h"
+#include "proto/system/identity.h"
 #include "proto/system/log.h"
 #include "proto/system/program.h"
+#include "proto/system/test_delay.h"
 #include "proto/system/time_account.h"
 #include "proto/wire/connect.h"
 #include "proto/wire/endpoint.h"
@@ -46,23 +47,21 @@ int run(const std::string& root) {
   learner::check_device(config.run.device);
   record_libraries(directory, config.run.device);
 
-  const Addresses where = addresses(config.run, run_id);
-  const auto started = std::chrono::system_clock::now().time_since_epoch();
-  const ClientIdentity identity{
-      run_id, Role::kLearner, 0,
-      static_cast<std::uint64_t>(
-          std::chrono::duration_cast<std::chrono::nanoseconds>(started).count())};
-  ClientLimits limits;
-  limits.peer_timeout = Duration(static_cast<std::int64_t>(config.run.peer_timeout_s * 1000.0));
-
   learner::LearnerState state = learner::load_state(config, directory);
   MetricsWriter metrics(directory.metrics("learner"));
-  Server server(where.learner, run_id);
+  Server server(addresses(config.run, run_id).learner, run_id);
   learner::Publisher publisher(server, static_cast<std::size_t>(config.run.actors));
-  Client client(where.replay, "replay server", identity, limits);
+  Client client = connect_to_replay(config.run, {run_id, Role::kLearner, 0, draw_incarnation()});
   TimeAccount time;
   learner::ReplayClient replay(client, time, [&] { publisher.service(Duration::zero()); });
-  learner::Training training(config, {directory, replay, publisher, metrics, time, stop_requested},
+  learner::Training training(config,
+                             {.directory = directory,
+                              .replay = replay,
+                              .publisher = publisher,
+                              .metrics = metrics,
+                              .time = time,
+                              .stop_requested = stop_requested,
+                              .delay = test_delay()},
                              std::move(state));
   training.run();
   return 0;

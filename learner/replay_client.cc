@@ -2,30 +2,17 @@
 
 #include <algorithm>
 #include <utility>
+#include <variant>
 
 #include "proto/base/failure.h"
 #include "proto/wire/codec.h"
+#include "proto/wire/connect.h"
 
 namespace corridor::learner {
 namespace {
 
 constexpr Duration kGlance{1};
-
-template <typename Reply>
-Reply expect(const Body& body) {
-  try {
-    if constexpr (std::is_same_v<Reply, ReceivedBatch>) {
-      if (auto batch = decode_batch(body)) return *std::move(batch);
-    } else {
-      ReplayReply reply = decode_replay_reply(body);
-      if (Reply* expected = std::get_if<Reply>(&reply)) return std::move(*expected);
-    }
-  } catch (const Malformed& malformed) {
-    throw Failure("the replay server's answer is malformed: {}", malformed.what());
-  }
-  throw Failure(
-      "the replay server answered another question: do all processes run the same build?");
-}
+constexpr const char* kPeer = "replay server";
 
 // `batch` becomes rows first, first + n, first + 2n ... of `drawn`.
 void every_nth(const ReceivedBatch& drawn, std::size_t first, std::size_t n, Batch& batch) {
@@ -62,18 +49,17 @@ void ReplayClient::do_between() {
   time_.charge(TimePart::kPublish);
 }
 
-template <typename Reply>
-Reply ReplayClient::receive() {
+Body ReplayClient::receive() {
   time_.charge(TimePart::kTransport);
   while (true) {
     // The client itself gives up on a server that is lost.
-    if (const auto body = glance(TimePart::kWaitForReplay)) return expect<Reply>(*body);
+    if (const auto body = glance(TimePart::kWaitForReplay)) return *body;
   }
 }
 
 void ReplayClient::join(std::uint64_t next_round) {
   send(Join{});
-  const std::uint64_t servers = receive<Joined>().next_round;
+  const std::uint64_t servers = expect<Joined>(receive(), decode_replay_reply, kPeer).next_round;
   if (servers == next_round) return;
   throw Failure(
       "the replay server goes on with round {}, the learner with round {}: both must start from "
@@ -86,13 +72,19 @@ std::optional<Opened> ReplayClient::open_block(std::uint64_t round,
   send(OpenBlock{round});
   time_.charge(TimePart::kTransport);
   while (!give_up()) {
-    if (const auto body = glance(TimePart::kWaitForActors)) return expect<Opened>(*body);
+    if (const auto body = glance(TimePart::kWaitForActors)) {
+      return expect<Opened>(*body, decode_replay_reply, kPeer);
+    }
   }
   return std::nullopt;
 }
 
 ReceivedBatch ReplayClient::receive_batch(std::size_t rows) {
-  ReceivedBatch batch = receive<ReceivedBatch>();
+  const auto decode = [](const Body& body) -> std::variant<std::monostate, ReceivedBatch> {
+    if (auto batch = decode_batch(body)) return *std::move(batch);
+    return {};
+  };
+  ReceivedBatch batch = expect<ReceivedBatch>(receive(), decode, kPeer);
   if (batch.keys.size() != rows || batch.weights.size() != rows) {
     throw Failure("the replay server sent {} keys and {} weights, {} rows were asked for",
                   batch.keys.size(), batch.weights.size(), rows);
@@ -136,7 +128,7 @@ void ReplayClient::run_block(const Block& block,
 bool ReplayClient::save(const std::filesystem::path& directory,
                         const std::filesystem::path& previous) {
   send(Save{directory.string(), previous.string()});
-  return receive<Saved>().complete;
+  return expect<Saved>(receive(), decode_replay_reply, kPeer).complete;
 }
 
 }  // namespace corridor::learner

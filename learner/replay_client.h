@@ -57,8 +57,7 @@ class ReplayClient {
   void do_between();
   // One look at the socket.
   std::optional<Body> glance(TimePart waiting);
-  template <typename Reply>
-  Reply receive();
+  Body receive();
   ReceivedBatch receive_batch(std::size_t rows);
 
   Client& client_;

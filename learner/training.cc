@@ -3,19 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
-#include <thread>
 #include <utility>
 #include <vector>
 
 #include "learner/torch_q_network.h"
 #include "proto/base/failure.h"
-#include "proto/base/random.h"
 #include "proto/system/log.h"
 
 namespace corridor::learner {
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::minutes kHangs{30};  // no round of any scenario takes that long
 constexpr Duration kGlance{1};
@@ -73,7 +69,8 @@ Training::Training(const RunConfig& config, Surroundings surroundings, LearnerSt
       around_(std::move(surroundings)),
       state_(std::move(state)),
       phase_(phase_in_progress(schedule_, state_.next_round)),
-      checkpointer_(config_, Checkpoints(around_.directory.checkpoints()), around_.replay),
+      checkpointer_(config_, Checkpoints(around_.directory.checkpoints()), around_.replay,
+                    around_.clock),
       checkpointed_(state_.next_round) {
   begin_phase(std::move(state_.td));
 }
@@ -109,7 +106,7 @@ bool Training::run() {
 }
 
 bool Training::train_round(std::uint64_t round) {
-  delay(round);
+  around_.delay();
   if (schedule_.selects_in(round) && !await_selection(round)) {
     checkpoint_now();
     return false;
@@ -128,10 +125,10 @@ bool Training::train_round(std::uint64_t round) {
 }
 
 bool Training::await_selection(std::uint64_t round) {
-  const Clock::time_point start = Clock::now();
+  const TimePoint start = around_.clock();
   while (!(selected_ = around_.publisher.selection(round))) {
     if (around_.stop_requested()) return false;
-    if (Clock::now() - start > kHangs) {
+    if (around_.clock() - start > kHangs) {
       throw Failure(
           "round {}: actors {} have not reported their evaluation in {} min: see their "
           "logs, then resume the run",
@@ -162,18 +159,18 @@ void Training::consider(const SelectionOutcome& outcome) {
 }
 
 std::optional<Opened> Training::await_block(std::uint64_t round) {
-  const Clock::time_point start = Clock::now();
-  std::optional<Clock::time_point> stopping;
+  const TimePoint start = around_.clock();
+  std::optional<TimePoint> stopping;
   const auto give_up = [&] {
-    if (Clock::now() - start > kHangs) {
+    if (around_.clock() - start > kHangs) {
       throw Failure(
           "round {}: chunks of actors are missing for {} min: see replay.log for which, "
           "then resume the run",
           round, kHangs.count());
     }
     if (!around_.stop_requested()) return false;
-    if (!stopping) stopping = Clock::now();
-    return Clock::now() - *stopping > around_.stop_patience;
+    if (!stopping) stopping = around_.clock();
+    return around_.clock() - *stopping > around_.stop_patience;
   };
   return around_.replay.open_block(round, give_up);
 }
@@ -238,9 +235,9 @@ void Training::checkpoint_now() {
 }
 
 void Training::finish_checkpoint() {
-  const Clock::time_point start = Clock::now();
+  const TimePoint start = around_.clock();
   while (checkpointer_.busy()) {
-    if (Clock::now() - start > kHangs) {
+    if (around_.clock() - start > kHangs) {
       throw Failure("a checkpoint is not complete after {} min: is the disk of {} alive?",
                     kHangs.count(), around_.directory.root().string());
     }
@@ -282,15 +279,6 @@ void Training::report(std::uint64_t round, const Opened& opened, const BlockResu
   }
   around_.metrics.write(phase_name(phase), round, steps, values);
   steps_since_report_ = 0;
-}
-
-// Tests slow every process at random, by other amounts in each run: the result must not change.
-void Training::delay(std::uint64_t round) const {
-  if (config_.run.delay_ms_max <= 0.0) return;
-  const auto now = static_cast<std::uint64_t>(Clock::now().time_since_epoch().count());
-  const double share = random_unit(now, Purpose::kWireDelay, {round});
-  std::this_thread::sleep_for(
-      std::chrono::duration<double, std::milli>(share * config_.run.delay_ms_max));
 }
 
 }  // namespace corridor::learner

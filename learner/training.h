@@ -2,7 +2,6 @@
 // docs/architecture.md, "Lockstep", says why the result does not depend on timing.
 #pragma once
 
-#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -18,6 +17,8 @@
 #include "proto/run/run_directory.h"
 #include "proto/settings/schedule.h"
 #include "proto/settings/settings.h"
+#include "proto/system/clock.h"
+#include "proto/system/test_delay.h"
 #include "proto/system/time_account.h"
 
 namespace corridor::learner {
@@ -31,6 +32,8 @@ struct Surroundings {
   TimeAccount& time;
   std::function<bool()> stop_requested;
   Duration stop_patience{1500};  // asked to stop: how long to wait for a block's last chunks
+  TestDelay delay = [] {};       // before each round
+  Clock clock = steady_now;
 };
 
 // `average` after so many more updates that led to `newest`: what it held counts exp(-updates /
@@ -80,7 +83,6 @@ class Training {
   void checkpoint_now();
   void finish_checkpoint();
   void report(std::uint64_t round, const Opened& opened, const BlockResult& result);
-  void delay(std::uint64_t round) const;
 
   const DqnSettings& dqn() const { return config_.phase(phase_); }
 

@@ -8,6 +8,7 @@
 #include "proto/system/command_line.h"
 #include "proto/system/log.h"
 #include "proto/system/program.h"
+#include "proto/system/test_delay.h"
 #include "proto/wire/connect.h"
 #include "replay/replay_service.h"
 #include "replay/serve.h"
@@ -27,7 +28,7 @@ int run(const std::string& root) {
   }
   MetricsWriter metrics(directory.metrics("replay"));
   Server server(addresses(config.run, run_id).replay, run_id);
-  replay::serve(server, service, metrics, config, stop_requested);
+  replay::serve(server, service, metrics, config, {stop_requested, test_delay()});
   log_info("ends at round {}; {} messages dropped", service.next_round(), server.dropped());
   return 0;
 }

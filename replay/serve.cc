@@ -3,10 +3,8 @@
 #include <chrono>
 #include <optional>
 #include <string>
-#include <thread>
 #include <utility>
 
-#include "proto/base/random.h"
 #include "proto/settings/schedule.h"
 #include "proto/system/log.h"
 #include "proto/system/time_account.h"
@@ -15,21 +13,15 @@
 namespace corridor::replay {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
 constexpr Duration kPatience{100};
 constexpr std::chrono::seconds kSilence{5};  // before it is worth a line in the log
 constexpr std::uint64_t kBlocksPerMetrics = 32;
 
 class Loop {
  public:
-  Loop(Server& server, ReplayService& service, MetricsWriter& metrics, const RunConfig& config)
-      : server_(server),
-        service_(service),
-        metrics_(metrics),
-        schedule_(config),
-        seed_(config.run.seed),
-        delay_ms_max_(config.run.delay_ms_max) {}
+  Loop(Server& server, ReplayService& service, MetricsWriter& metrics, const RunConfig& config,
+       const ServeHooks& hooks)
+      : server_(server), service_(service), metrics_(metrics), schedule_(config), hooks_(hooks) {}
 
   void turn() {
     const bool chunks_missing = !service_.awaited().empty();
@@ -44,7 +36,7 @@ class Loop {
     try {
       ReplayRequest decoded = decode_replay_request(request.body);
       const bool of_block = std::holds_alternative<OpenBlock>(decoded);
-      if (of_block || std::holds_alternative<Insert>(decoded)) delay();
+      if (of_block || std::holds_alternative<Insert>(decoded)) hooks_.delay();
       const TimePart work = part_of(decoded);
       time_.charge(TimePart::kTransport);
       const Outcome outcome = service_.handle(request.client, std::move(decoded));
@@ -60,7 +52,7 @@ class Loop {
       } else {
         // An earlier OpenBlock that still waits came from a learner that has been replaced.
         opening_ = request;
-        opening_since_ = Clock::now();
+        opening_since_ = hooks_.clock();
         write_metrics();
       }
     } catch (const Malformed& malformed) {
@@ -83,11 +75,11 @@ class Loop {
     if (opened) {
       server_.reply(*opening_, encode(*opened));
       opening_.reset();
-    } else if (Clock::now() - opening_since_ > kSilence) {
+    } else if (hooks_.clock() - opening_since_ > kSilence) {
       std::string actors;
       for (const std::uint32_t actor : service_.awaited()) actors += fmt::format(" {}", actor);
       log_info("block {} waits for the chunks of actors{}", service_.next_round(), actors);
-      opening_since_ = Clock::now();
+      opening_since_ = hooks_.clock();
     }
   }
 
@@ -102,32 +94,23 @@ class Loop {
                    schedule_.phase_steps_before(round) + schedule_.steps_per_round(), values);
   }
 
-  // A test aid (run.delay_ms_max): results must not depend on how fast anything is.
-  void delay() {
-    if (delay_ms_max_ <= 0.0) return;
-    const double share = random_unit(seed_, Purpose::kWireDelay, {delays_++});
-    std::this_thread::sleep_for(std::chrono::duration<double, std::milli>(share * delay_ms_max_));
-  }
-
   Server& server_;
   ReplayService& service_;
   MetricsWriter& metrics_;
   const Schedule schedule_;
-  const std::uint64_t seed_;
-  const double delay_ms_max_;
+  const ServeHooks& hooks_;
 
   std::optional<IncomingRequest> opening_;  // the OpenBlock that waits
-  Clock::time_point opening_since_;         // or since it was last told
+  TimePoint opening_since_;                 // or since it was last told
   TimeAccount time_;
-  std::uint64_t delays_ = 0;
 };
 
 }  // namespace
 
 void serve(Server& server, ReplayService& service, MetricsWriter& metrics, const RunConfig& config,
-           const std::function<bool()>& stop) {
-  Loop loop(server, service, metrics, config);
-  while (!stop()) loop.turn();
+           const ServeHooks& hooks) {
+  Loop loop(server, service, metrics, config, hooks);
+  while (!hooks.stop()) loop.turn();
 }
 
 }  // namespace corridor::replay

@@ -14,18 +14,17 @@
 #include <utility>
 
 #include "proto/base/failure.h"
+#include "proto/system/identity.h"
 
 namespace corridor::cluster {
 namespace {
 
 constexpr int kFailureStatus = 1;  // proto/system/program.h
-// For a process to become its program, or to say why it cannot.
-constexpr int kExecPatience_ms = 2000;
 
-std::vector<std::string> environment_of(const Pulse& pulse) {
+std::vector<std::string> environment_of(const Pulse& pulse, std::uint32_t starts) {
   // The processes share the cores already: threads of their own would only get in each other's way.
   std::vector<std::string> result = {"OMP_NUM_THREADS=1", "OPENBLAS_NUM_THREADS=1",
-                                     pulse.environment()};
+                                     pulse.environment(), start_environment(starts)};
   for (char** entry = environ; *entry != nullptr; ++entry) {
     const std::string_view text = *entry;
     if (!text.starts_with("OMP_NUM_THREADS=") && !text.starts_with("OPENBLAS_NUM_THREADS=")) {
@@ -81,10 +80,10 @@ std::string last_words(const Ended& ended) {
 
 }  // namespace
 
-void Children::start(const ProcessPlan& plan) {
+void Children::start(const ProcessPlan& plan, std::chrono::milliseconds patience) {
   Pulse pulse;
   std::vector<std::string> arguments = plan.argv;
-  std::vector<std::string> environment = environment_of(pulse);
+  std::vector<std::string> environment = environment_of(pulse, ++starts_);
   const std::vector<char*> argv = pointers(arguments);
   const std::vector<char*> envp = pointers(environment);
 
@@ -107,10 +106,9 @@ void Children::start(const ProcessPlan& plan) {
   if (pid > 0) {
     setpgid(pid, pid);  // here as well: whoever comes first
     running_.push_back({plan.name, plan.log, static_cast<std::uintmax_t>(log_start), pid,
-                        std::move(pulse), 0, Clock::now(), false});
-    // One that is stopped before it has become the program says nothing, and is found as hung.
+                        std::move(pulse), 0, std::nullopt, false});
     pollfd said{errors[0], POLLIN, 0};
-    const bool over = poll(&said, 1, kExecPatience_ms) > 0;
+    const bool over = poll(&said, 1, static_cast<int>(patience.count())) > 0;
     if (over && read(errors[0], &error, sizeof error) < 0) error = errno;
   }
   close(errors[0]);
@@ -141,12 +139,11 @@ void Children::signal(int signal, const std::string& only) {
   }
 }
 
-void Children::kill_hung(std::chrono::milliseconds silence) {
-  const Clock::time_point now = Clock::now();
+void Children::kill_hung(std::chrono::milliseconds silence, TimePoint now) {
   for (Child& child : running_) {
     const std::uint64_t beats = child.pulse.beats();
-    if (beats != std::exchange(child.beats, beats)) child.alive_at = now;
-    if (now - child.alive_at < silence) continue;
+    if (beats != std::exchange(child.beats, beats) || !child.alive_at) child.alive_at = now;
+    if (now - *child.alive_at < silence) continue;
     child.hung = true;
     kill(-child.pid, SIGKILL);
   }
@@ -155,8 +152,8 @@ void Children::kill_hung(std::chrono::milliseconds silence) {
 void Children::kill_all() {
   signal(SIGKILL);
   // The kernel ends them within moments; the deadline is for one stuck in a broken device.
-  const auto deadline = Clock::now() + std::chrono::seconds(2);
-  while (!running_.empty() && Clock::now() < deadline) {
+  const TimePoint deadline = steady_now() + std::chrono::seconds(2);
+  while (!running_.empty() && steady_now() < deadline) {
     if (!reap()) poll(nullptr, 0, 1);
   }
   running_.clear();

@@ -12,6 +12,7 @@
 #include <string>
 
 #include "cluster/launch/plan.h"
+#include "proto/system/clock.h"
 #include "proto/system/pulse.h"
 
 namespace corridor::cluster {
@@ -39,16 +40,18 @@ class Children {
   Children(const Children&) = delete;
   Children& operator=(const Children&) = delete;
 
-  // Throws Failure when the program cannot be started.
-  void start(const ProcessPlan& plan);
+  // Throws Failure when the program cannot be started. One that has neither become its program nor
+  // said why it cannot when `patience` is over is started all the same, and found as hung.
+  void start(const ProcessPlan& plan, std::chrono::milliseconds patience = std::chrono::seconds(2));
 
   // One that has ended since, together with what was left of its group.
   std::optional<Ended> reap();
 
   // To all, or to one.
   void signal(int signal, const std::string& only = {});
-  // Those that have given no sign of life (proto/system/pulse.h) for so long.
-  void kill_hung(std::chrono::milliseconds silence);
+  // Those that have given no sign of life (proto/system/pulse.h) for so long, by the calls of this
+  // function, which are to come far more often. `now` never steps back.
+  void kill_hung(std::chrono::milliseconds silence, TimePoint now);
   // At its return none is left.
   void kill_all();
 
@@ -56,18 +59,17 @@ class Children {
   bool has(const std::string& name) const;
 
  private:
-  using Clock = std::chrono::steady_clock;
-
   struct Child {
     std::string name;
     std::filesystem::path log;
     std::uintmax_t log_start = 0;
     pid_t pid = 0;  // of the process and its group
     Pulse pulse;
-    std::uint64_t beats = 0;     // when last looked at
-    Clock::time_point alive_at;  // when they were last more than before
+    std::uint64_t beats = 0;            // when last looked at
+    std::optional<TimePoint> alive_at;  // when they were last more than before
     bool hung = false;
   };
+  std::uint32_t starts_ = 0;
   std::list<Child> running_;
 };
 

@@ -20,8 +20,6 @@
 namespace corridor::cluster {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
 // Signals as readable events, as long as it lives.
 class Signals {
  public:
@@ -57,29 +55,32 @@ class Signals {
 };
 
 // Waits until `done` says so, at most `patience`. A repeated stop signal kills all.
-void wait_for_end(Children& children, Signals& signals, Milliseconds patience,
-                  Clock::time_point repeated_from, const std::function<bool()>& done) {
-  const auto deadline = Clock::now() + patience;
+void wait_for_end(Children& children, Signals& signals, const Limits& limits, Milliseconds patience,
+                  TimePoint repeated_from, const std::function<bool()>& done) {
+  const TimePoint deadline = limits.clock() + patience;
   while (true) {
     while (children.reap()) {
     }
-    const auto left = std::chrono::ceil<Milliseconds>(deadline - Clock::now());
+    const auto left = std::chrono::ceil<Milliseconds>(deadline - limits.clock());
     if (done() || left.count() <= 0) return;
-    if (signals.wait(left) && Clock::now() >= repeated_from) children.kill_all();
+    if (signals.wait(std::min(left, limits.tick)) && limits.clock() >= repeated_from) {
+      children.kill_all();
+    }
   }
 }
 
 // Ends `first` (when there is one), then all.
 void stop(Children& children, Signals& signals, const std::string& first, const Limits& limits,
           Milliseconds patience) {
-  const auto repeated_from = Clock::now() + limits.repeated_signal;
+  const TimePoint repeated_from = limits.clock() + limits.repeated_signal;
   if (!first.empty() && children.has(first)) {
     children.signal(SIGTERM, first);
-    wait_for_end(children, signals, limits.checkpoint, repeated_from,
+    wait_for_end(children, signals, limits, limits.checkpoint, repeated_from,
                  [&] { return !children.has(first); });
   }
   children.signal(SIGTERM);
-  wait_for_end(children, signals, patience, repeated_from, [&] { return children.size() == 0; });
+  wait_for_end(children, signals, limits, patience, repeated_from,
+               [&] { return children.size() == 0; });
   children.kill_all();
 }
 
@@ -112,7 +113,7 @@ Ending run_together(const std::vector<ProcessPlan>& plan, const std::string& mai
   if (stop_requested()) return {SIGINT};
   Children children;
   const auto start_all = [&] {
-    for (const ProcessPlan& process : plan) children.start(process);
+    for (const ProcessPlan& process : plan) children.start(process, limits.start);
   };
   start_all();
   Deaths deaths;
@@ -123,7 +124,7 @@ Ending run_together(const std::vector<ProcessPlan>& plan, const std::string& mai
       stop(children, signals, main_process, limits, limits.others);
       return {*signal};
     }
-    children.kill_hung(limits.hung);
+    children.kill_hung(limits.hung, limits.clock());
     // Others may end just because the main process has: all ends are read first.
     std::vector<Ended> dead;
     bool done = false;
@@ -157,7 +158,7 @@ Ending run_together(const std::vector<ProcessPlan>& plan, const std::string& mai
     }
     for (const Ended& ended : dead) {
       supervision.died(ended, /*all=*/false);
-      children.start(plan_of(plan, ended.name));
+      children.start(plan_of(plan, ended.name), limits.start);
     }
   }
 }
@@ -171,7 +172,7 @@ Ending run_queue(const std::vector<ProcessPlan>& plan, int jobs, const Limits& l
   std::size_t next = 0;
   while (true) {
     while (next < plan.size() && children.size() < static_cast<std::size_t>(jobs)) {
-      children.start(plan[next++]);
+      children.start(plan[next++], limits.start);
     }
     beat();
     tick();
@@ -180,7 +181,7 @@ Ending run_queue(const std::vector<ProcessPlan>& plan, int jobs, const Limits& l
       stop(children, signals, "", limits, limits.others);
       return {*signal};
     }
-    children.kill_hung(limits.hung);
+    children.kill_hung(limits.hung, limits.clock());
     while (const std::optional<Ended> ended = children.reap()) {
       if (ended->well()) continue;
       stop(children, signals, "", limits, limits.others);

@@ -13,6 +13,7 @@
 
 #include "cluster/launch/children.h"
 #include "cluster/launch/plan.h"
+#include "proto/system/clock.h"
 
 namespace corridor::cluster {
 
@@ -23,6 +24,7 @@ using Milliseconds = std::chrono::milliseconds;
 
 struct Limits {
   Milliseconds tick{200};         // between two calls of `tick`, at most
+  Milliseconds start{2000};       // for a process to become its program
   Milliseconds checkpoint{3500};  // for the learner to end once asked to
   Milliseconds others{1000};      // for the others, after it, when a signal or failure ends all
   Milliseconds after_work{3000};  // for the others, when the work is done
@@ -31,6 +33,7 @@ struct Limits {
   Milliseconds repeated_signal{300};
   Milliseconds hung{20'000};  // a process without a sign of life for so long is killed
   int deaths = 5;             // of one process, without progress in between: too many
+  Clock clock = steady_now;   // by which these times pass, but for `tick` and `start`
 };
 
 // How the processes came to their end, when not by a failure.
@@ -60,7 +63,8 @@ Ending run_together(const std::vector<ProcessPlan>& plan, const std::string& mai
                     const Limits& limits, const Supervision& supervision);
 
 // Runs every process of the plan, at most `jobs` at a time, in order. One that ends
-// with another status than 0 ends all: throws Failure with its name, last error line and log.
+// with another status than 0, or hangs, ends all: throws Failure with its name, last error line and
+// log.
 Ending run_queue(const std::vector<ProcessPlan>& plan, int jobs, const Limits& limits,
                  const std::function<void()>& tick);
 

@@ -1,12 +1,7 @@
 #include "cluster/launch/manifest.h"
 
-#include <sys/random.h>
-#include <unistd.h>
-
 #include <array>
-#include <cerrno>
 #include <cstdio>
-#include <cstring>
 #include <ctime>
 #include <fstream>
 #include <memory>
@@ -18,6 +13,7 @@
 #include "proto/config/run_config.h"
 #include "proto/run/run_directory.h"
 #include "proto/system/files.h"
+#include "proto/system/identity.h"
 #include "proto/system/program.h"
 
 namespace corridor::cluster {
@@ -32,11 +28,6 @@ std::string utc_now() {
   std::array<char, 32> text{};
   std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &parts);
   return text.data();
-}
-
-std::string host_name() {
-  std::array<char, 256> name{};
-  return gethostname(name.data(), name.size() - 1) == 0 ? name.data() : kUnknown;
 }
 
 std::string cpu_model() {
@@ -72,13 +63,7 @@ std::string blas_library() {
 }  // namespace
 
 std::string draw_run_id() {
-  std::array<unsigned char, 16> bytes{};
-  if (getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size())) {
-    throw Failure("cannot draw a run id: {}", std::strerror(errno));
-  }
-  std::string text;
-  for (const unsigned char byte : bytes) text += fmt::format("{:02x}", byte);
-  return text;
+  return fmt::format("{:016x}{:016x}", random_64_bits(), random_64_bits());
 }
 
 OrderedJson describe_run(const std::string& run_id, const RunConfig& config,

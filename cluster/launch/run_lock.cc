@@ -13,16 +13,12 @@
 #include <string>
 
 #include "proto/base/failure.h"
+#include "proto/system/clock.h"
+#include "proto/system/identity.h"
 #include "proto/system/program.h"
 
 namespace corridor::cluster {
 namespace {
-
-std::string host_name() {
-  std::array<char, 256> name{};
-  gethostname(name.data(), name.size() - 1);
-  return name.data();
-}
 
 // What the lock file says: "<pid> <host>".
 struct Owner {
@@ -48,10 +44,10 @@ RunLock::RunLock(const RunDirectory& directory, std::chrono::milliseconds patien
   // Not close-on-exec: the run's processes are to hold it too.
   descriptor_ = open(file.c_str(), O_RDWR | O_CREAT, 0644);
   if (descriptor_ < 0) throw Failure("cannot open {}: {}", file.string(), std::strerror(errno));
-  const auto deadline = std::chrono::steady_clock::now() + patience;
+  const TimePoint deadline = steady_now() + patience;
   while (flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
     const Owner owner = read_owner(descriptor_);
-    if (owner.gone() && std::chrono::steady_clock::now() < deadline && !stop_requested()) {
+    if (owner.gone() && steady_now() < deadline && !stop_requested()) {
       poll(nullptr, 0, 50);
       continue;
     }

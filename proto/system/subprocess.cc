@@ -5,11 +5,11 @@
 #include <signal.h>
 #include <spawn.h>
 #include <sys/mman.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
@@ -17,12 +17,12 @@
 #include <utility>
 
 #include "proto/base/failure.h"
+#include "proto/system/clock.h"
 
 namespace corridor {
 namespace {
 
 namespace fs = std::filesystem;
-using Clock = std::chrono::steady_clock;
 
 constexpr std::size_t kOutputBytesMax = 64 << 20;
 
@@ -99,45 +99,50 @@ class Child {
     }
     output_.write_end.reset();
     errors_.write_end.reset();
+    // glibc 2.36 declares pidfd_open for C only.
+    end_ = Descriptor(static_cast<int>(syscall(SYS_pidfd_open, pid_, 0)));
+    if (end_.get() >= 0) return;
+    const int reason = errno;
+    end();
+    fail(program, reason);
   }
-  ~Child() {
-    if (pid_ <= 0) return;
-    kill(pid_, SIGKILL);
-    waitpid(pid_, nullptr, 0);
-  }
+  ~Child() { end(); }
   Child(const Child&) = delete;
   Child& operator=(const Child&) = delete;
 
-  // What it writes until it has closed both; false when it has not by the deadline.
-  bool read_all(Clock::time_point deadline, SubprocessResult& result) {
-    std::array<std::pair<Descriptor*, std::string*>, 2> streams = {
-        {{&output_.read_end, &result.output}, {&errors_.read_end, &result.errors}}};
-    while (output_.read_end.get() >= 0 || errors_.read_end.get() >= 0) {
-      const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - Clock::now());
+  // Fills `result` until there is no more to come; false when there may be, at the deadline.
+  bool run(TimePoint deadline, SubprocessResult& result) {
+    while (output_.read_end.get() >= 0 || errors_.read_end.get() >= 0 || end_.get() >= 0) {
+      const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - steady_now());
       if (left.count() <= 0) return false;
       // A descriptor of -1 is none to poll.
-      pollfd ready[] = {{output_.read_end.get(), POLLIN, 0}, {errors_.read_end.get(), POLLIN, 0}};
-      if (poll(ready, 2, static_cast<int>(std::min<long>(left.count(), 1000))) <= 0) continue;
-      for (std::size_t i = 0; i < streams.size(); ++i) {
-        if (ready[i].revents != 0) read_some(*streams[i].first, *streams[i].second);
-      }
+      pollfd ready[] = {{output_.read_end.get(), POLLIN, 0},
+                        {errors_.read_end.get(), POLLIN, 0},
+                        {end_.get(), POLLIN, 0}};
+      if (poll(ready, 3, static_cast<int>(std::min<long>(left.count(), 1000))) <= 0) continue;
+      if (ready[0].revents != 0) read_some(output_.read_end, result.output);
+      if (ready[1].revents != 0) read_some(errors_.read_end, result.errors);
+      if (ready[2].revents != 0) result.status = reap();
     }
     return true;
   }
 
-  // As SubprocessResult::status. Called when it is about to end.
-  int wait() {
-    constexpr int kPatience_ms = 1000;
+ private:
+  void end() {
+    if (pid_ <= 0) return;
+    kill(pid_, SIGKILL);
+    waitpid(pid_, nullptr, 0);
+  }
+
+  // As SubprocessResult::status.
+  int reap() {
     int status = 0;
-    for (int waited_ms = 0; waitpid(pid_, &status, WNOHANG) == 0; ++waited_ms) {
-      if (waited_ms == kPatience_ms) kill(pid_, SIGKILL);
-      usleep(1000);
-    }
+    waitpid(pid_, &status, 0);
     pid_ = -1;
+    end_.reset();
     return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   }
 
- private:
   static void read_some(Descriptor& stream, std::string& text) {
     char buffer[65536];
     const ssize_t count = read(stream.get(), buffer, sizeof buffer);
@@ -149,7 +154,8 @@ class Child {
 
   Pipe output_;
   Pipe errors_;
-  pid_t pid_ = -1;
+  pid_t pid_ = -1;  // -1: reaped
+  Descriptor end_;  // readable when the process has ended
 };
 
 }  // namespace
@@ -170,11 +176,10 @@ std::optional<SubprocessResult> run_subprocess(const fs::path& program,
                                                const std::vector<std::string>& arguments,
                                                const std::string& input,
                                                std::chrono::milliseconds patience) {
-  const auto deadline = Clock::now() + patience;
+  const TimePoint deadline = steady_now() + patience;
   Child child(program, arguments, input);
   SubprocessResult result;
-  if (!child.read_all(deadline, result)) return std::nullopt;
-  result.status = child.wait();
+  if (!child.run(deadline, result)) return std::nullopt;
   return result;
 }
 

@@ -1,4 +1,4 @@
-// A program that somebody else wrote, run to its end: netconvert, gnuplot.
+// Another program, run to its end: netconvert, gnuplot, ffmpeg, an actor of ours.
 #pragma once
 
 #include <chrono>
@@ -20,9 +20,9 @@ struct SubprocessResult {
   bool operator==(const SubprocessResult&) const = default;
 };
 
-// Runs `program` with `input` as its standard input until it has closed both outputs; one that then
-// lives on for a second is killed. Returns nothing when it has not closed them by the deadline; it
-// is killed then, too. Throws Failure when it cannot be started.
+// Runs `program` with `input` as its standard input until it has ended and nobody has its outputs
+// open any more. Returns nothing, and kills it, when that is not so once `patience` is over. Throws
+// Failure when it cannot be started.
 std::optional<SubprocessResult> run_subprocess(const std::filesystem::path& program,
                                                const std::vector<std::string>& arguments,
                                                const std::string& input,

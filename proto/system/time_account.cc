@@ -21,11 +21,11 @@ const char* time_part_name(TimePart part) {
   return kNames[static_cast<std::size_t>(part)];
 }
 
-std::vector<std::pair<std::string, double>> TimeAccount::take() {
-  const double wall_s = this->wall_s();
+std::vector<std::pair<std::string, double>> TimeAccount::take(TimePoint now) {
+  const double wall_s = this->wall_s(now);
   std::vector<std::pair<std::string, double>> values;
   for (std::size_t i = 0; i < kTimeParts; ++i) {
-    const double spent_s = std::chrono::duration<double>(spent_[i]).count();
+    const double spent_s = in_seconds(spent_[i]);
     known_[i] = known_[i] || spent_s > 0.0;
     if (!known_[i]) continue;
     values.emplace_back(std::string("time/") + time_part_name(static_cast<TimePart>(i)),
@@ -39,7 +39,7 @@ std::vector<std::pair<std::string, double>> TimeAccount::take() {
   values.emplace_back("time/cpu_s", own_s);
   values.emplace_back("time/cpu_of_io_s", std::max(0.0, all_s - own_s));
   spent_ = {};
-  taken_ = Clock::now();
+  taken_ = now;
   return values;
 }
 

@@ -1,15 +1,15 @@
 // Where a process's time goes: every moment of its main thread belongs to one part. Always on: a
-// charge is one look at the clock, about 25 ns. One thread.
+// charge is one look at the clock, about 25 ns. One thread. `now`: for tests.
 #pragma once
 
 #include <array>
-#include <chrono>
 #include <cstddef>
 #include <ctime>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "proto/system/clock.h"
 #include "proto/system/pulse.h"
 
 namespace corridor {
@@ -41,29 +41,28 @@ inline bool is_wait(TimePart part) { return part >= TimePart::kWaitForActors; }
 
 class TimeAccount {
  public:
+  explicit TimeAccount(TimePoint now = steady_now()) : mark_(now), taken_(now) {}
+
   // What was passed since the last charge, or since the start, was spent on this part.
-  void charge(TimePart part) {
-    const Clock::time_point now = Clock::now();
+  void charge(TimePart part, TimePoint now = steady_now()) {
     spent_[static_cast<std::size_t>(part)] += now - std::exchange(mark_, now);
     beat();
   }
 
   // Since the last `take`, or since the start.
-  double wall_s() const { return std::chrono::duration<double>(Clock::now() - taken_).count(); }
+  double wall_s(TimePoint now = steady_now()) const { return in_seconds(now - taken_); }
 
-  // Over wall_s(): "time/<part>", its share of the wall time, of every
-  // part that was ever charged; "time/wall_s"; "time/cpu_s" of the calling thread and
-  // "time/cpu_of_io_s" of all others, ZeroMQ's.
-  std::vector<std::pair<std::string, double>> take();
+  // Over wall_s(): "time/<part>", its share of the wall time, of every part that was ever charged;
+  // "time/wall_s"; "time/cpu_s" of the calling thread and "time/cpu_of_io_s" of all others,
+  // ZeroMQ's.
+  std::vector<std::pair<std::string, double>> take(TimePoint now = steady_now());
 
  private:
-  using Clock = std::chrono::steady_clock;
-
-  Clock::time_point mark_ = Clock::now();
-  Clock::time_point taken_ = mark_;
+  TimePoint mark_;
+  TimePoint taken_;
   double thread_cpu_s_ = 0.0;
   double process_cpu_s_ = 0.0;
-  std::array<Clock::duration, kTimeParts> spent_{};
+  std::array<TimePoint::duration, kTimeParts> spent_{};
   std::array<bool, kTimeParts> known_{};
 };
 

@@ -11,6 +11,11 @@ std::string hash_of(std::string_view content) {
   return hash.hex();
 }
 
+ClientLimits limits_of(const RunSettings& settings) {
+  return {.peer_timeout =
+              std::chrono::round<Duration>(std::chrono::duration<double>(settings.peer_timeout_s))};
+}
+
 }  // namespace
 
 Addresses addresses(const RunSettings& settings, const std::string& run_id) {
@@ -21,6 +26,16 @@ Addresses addresses(const RunSettings& settings, const std::string& run_id) {
   const std::string name = hash_of(run_id);
   return {fmt::format("ipc://@corridor-{}-replay", name),
           fmt::format("ipc://@corridor-{}-learner", name)};
+}
+
+Client connect_to_replay(const RunSettings& settings, const ClientIdentity& identity) {
+  return Client(addresses(settings, identity.run_id).replay, "replay server", identity,
+                limits_of(settings));
+}
+
+Client connect_to_learner(const RunSettings& settings, const ClientIdentity& identity) {
+  return Client(addresses(settings, identity.run_id).learner, "learner", identity,
+                limits_of(settings));
 }
 
 }  // namespace corridor

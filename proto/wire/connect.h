@@ -1,4 +1,4 @@
-// Where a run's servers listen, and what both ends of a conversation do alike.
+// Where a run's servers listen, and what every conversation with them does alike.
 #pragma once
 
 #include <string>
@@ -6,6 +6,7 @@
 
 #include "proto/base/failure.h"
 #include "proto/settings/settings.h"
+#include "proto/wire/endpoint.h"
 
 namespace corridor {
 
@@ -16,11 +17,21 @@ struct Addresses {
 // From [run] and the run id (of which ipc names show a hash only: the id is what lets one in).
 Addresses addresses(const RunSettings& settings, const std::string& run_id);
 
-// The reply that was asked for. Throws Failure when it is another one.
-template <typename Reply, typename Variant>
-Reply expect(Variant reply, const std::string& peer) {
-  if (auto* value = std::get_if<Reply>(&reply)) return std::move(*value);
-  throw Failure("the {} answered with a message that was not asked for", peer);
+// In the background, as Client says; with the limits of [run].
+Client connect_to_replay(const RunSettings& settings, const ClientIdentity& identity);
+Client connect_to_learner(const RunSettings& settings, const ClientIdentity& identity);
+
+// The reply that was asked for: `decode` gives a variant of all. Throws Failure when it is another
+// one, or malformed.
+template <typename Reply, typename Decode>
+Reply expect(const Body& body, const Decode& decode, const char* peer) {
+  try {
+    auto reply = decode(body);
+    if (auto* value = std::get_if<Reply>(&reply)) return std::move(*value);
+  } catch (const Malformed& malformed) {
+    throw Failure("the {}'s answer is malformed: {}", peer, malformed.what());
+  }
+  throw Failure("the {} answered another question: do all processes run the same build?", peer);
 }
 
 }  // namespace corridor

@@ -14,7 +14,6 @@
 namespace corridor {
 namespace {
 
-using Clock = std::chrono::steady_clock;
 using Frames = std::vector<zmq::message_t>;
 
 // A peer's connection that is silent for so long is made anew (a cut link, a lost host). ZeroMQ's
@@ -46,9 +45,10 @@ auto uninterrupted(const Call& call) {
 }
 
 // Waits until the socket has something to read; false when a signal came instead.
-bool wait_for_message(zmq::socket_t& socket, Clock::duration patience) {
+bool wait_for_message(zmq::socket_t& socket, TimePoint::duration patience) {
   zmq::pollitem_t item{socket.handle(), 0, ZMQ_POLLIN, 0};
-  const auto rounded_up = std::chrono::ceil<Duration>(std::max(patience, Clock::duration::zero()));
+  const auto rounded_up =
+      std::chrono::ceil<Duration>(std::max(patience, TimePoint::duration::zero()));
   try {
     zmq::poll(&item, 1, rounded_up);
     return true;
@@ -127,14 +127,15 @@ struct Client::Impl {
   struct Request {
     std::uint64_t sequence = 0;
     zmq::message_t body;
-    Clock::time_point sent_at;
+    TimePoint sent_at;
     std::optional<Body> answer;
   };
 
-  Impl(Address server, std::string peer, ClientIdentity identity, ClientLimits bounds)
+  Impl(Address server, std::string peer, ClientIdentity identity, ClientLimits bounds, Clock time)
       : address(std::move(server)),
         peer_name(std::move(peer)),
         limits(bounds),
+        clock(std::move(time)),
         header{.run_id = std::move(identity.run_id),
                .role = identity.role,
                .index = identity.index,
@@ -155,13 +156,13 @@ struct Client::Impl {
 
   void send_request(Request& request) {
     header.sequence = request.sequence;
-    request.sent_at = Clock::now();
+    request.sent_at = clock();
     send_message(socket, std::nullopt, header, request.body);
   }
 
   void resend_overdue() {
     for (Request& request : requests) {
-      const bool overdue = Clock::now() - request.sent_at >= limits.resend_after;
+      const bool overdue = clock() - request.sent_at >= limits.resend_after;
       if (!request.answer && overdue) send_request(request);
     }
   }
@@ -169,13 +170,13 @@ struct Client::Impl {
   // Time that nobody spent in `receive` counts for one resend_after at most: a request may be
   // parked without a word, and only its repetitions must be answered at once.
   void count_silence() {
-    const Clock::time_point now = Clock::now();
-    silence += std::min<Clock::duration>(now - looked_at, limits.resend_after);
+    const TimePoint now = clock();
+    silence += std::min<TimePoint::duration>(now - looked_at, limits.resend_after);
     looked_at = now;
-    if (requests.empty()) silence = Clock::duration::zero();
+    if (requests.empty()) silence = TimePoint::duration::zero();
     if (silence < limits.peer_timeout) return;
     throw Failure("{} at {} has been silent for {} s: it has ended or cannot be reached", peer_name,
-                  address, std::chrono::duration<double>(limits.peer_timeout).count());
+                  address, in_seconds(limits.peer_timeout));
   }
 
   void handle(Frames frames) {
@@ -197,7 +198,7 @@ struct Client::Impl {
       throw Failure("{} at {} answers nonsense: a message that is not for this client", peer_name,
                     address);
     }
-    silence = Clock::duration::zero();
+    silence = TimePoint::duration::zero();
     if (reply.kind != MessageKind::kReply || requests.empty()) return;
     const std::uint64_t place = reply.sequence - requests.front().sequence;  // wraps for old ones
     if (place < requests.size() && !requests[place].answer) {
@@ -213,7 +214,7 @@ struct Client::Impl {
   }
 
   // When to look again although nothing came.
-  Clock::time_point wake_at(Clock::time_point deadline) const {
+  TimePoint wake_at(TimePoint deadline) const {
     if (!requests.empty()) deadline = std::min(deadline, looked_at + limits.peer_timeout - silence);
     for (const Request& request : requests) {
       if (!request.answer) deadline = std::min(deadline, request.sent_at + limits.resend_after);
@@ -224,24 +225,26 @@ struct Client::Impl {
   Address address;
   std::string peer_name;
   ClientLimits limits;
+  Clock clock;
   Header header;
   zmq::context_t context{1};
   zmq::socket_t socket{context, zmq::socket_type::dealer};
   std::uint64_t last_sequence = 0;
-  std::deque<Request> requests;  // unanswered, or waiting for the answer to an older one
-  Clock::duration silence{0};    // of the peer, so far
-  Clock::time_point looked_at = Clock::now();
+  std::deque<Request> requests;    // unanswered, or waiting for the answer to an older one
+  TimePoint::duration silence{0};  // of the peer, so far
+  TimePoint looked_at;
 };
 
-Client::Client(Address server, std::string peer, ClientIdentity identity, ClientLimits limits)
-    : impl_(std::make_unique<Impl>(std::move(server), std::move(peer), std::move(identity),
-                                   limits)) {}
+Client::Client(Address server, std::string peer, ClientIdentity identity, ClientLimits limits,
+               Clock clock)
+    : impl_(std::make_unique<Impl>(std::move(server), std::move(peer), std::move(identity), limits,
+                                   std::move(clock))) {}
 Client::~Client() = default;
 
 std::uint64_t Client::send(Body body) {
   Impl& impl = *impl_;
   CORRIDOR_CHECK(impl.requests.size() < impl.limits.window, "window {}", impl.limits.window);
-  if (impl.requests.empty()) impl.looked_at = Clock::now();
+  if (impl.requests.empty()) impl.looked_at = impl.clock();
   impl.requests.push_back({++impl.last_sequence, message_of(std::move(body)), {}, {}});
   impl.send_request(impl.requests.back());
   return impl.last_sequence;
@@ -249,7 +252,7 @@ std::uint64_t Client::send(Body body) {
 
 std::optional<Body> Client::receive(Duration patience) {
   Impl& impl = *impl_;
-  const Clock::time_point deadline = Clock::now() + patience;
+  const TimePoint deadline = impl.clock() + patience;
   while (true) {
     for (int i = 0; i < kHandledAtOnce; ++i) {
       std::optional<Frames> frames = next_message(impl.socket);
@@ -259,7 +262,7 @@ std::optional<Body> Client::receive(Duration patience) {
     if (std::optional<Body> answer = impl.take_answer()) return answer;
     impl.count_silence();
     impl.resend_overdue();
-    const Clock::time_point now = Clock::now();
+    const TimePoint now = impl.clock();
     if (now >= deadline || !wait_for_message(impl.socket, impl.wake_at(deadline) - now)) {
       return std::nullopt;
     }
@@ -464,14 +467,14 @@ Server::Server(const Address& address, std::string run_id, ServerLimits limits)
 Server::~Server() = default;
 
 std::optional<IncomingRequest> Server::receive(Duration patience) {
-  const Clock::time_point deadline = Clock::now() + patience;
+  const TimePoint deadline = steady_now() + patience;
   while (true) {
     for (int i = 0; i < kHandledAtOnce; ++i) {
       std::optional<Frames> frames = next_message(impl_->socket);
       if (!frames) break;
       if (auto request = impl_->handle(*std::move(frames))) return request;
     }
-    const Clock::time_point now = Clock::now();
+    const TimePoint now = steady_now();
     if (now >= deadline || !wait_for_message(impl_->socket, deadline - now)) return std::nullopt;
   }
 }

@@ -3,6 +3,10 @@
 //
 // Each object belongs to one thread and starts no thread of its own but ZeroMQ's. Nothing blocks
 // longer than it was told to.
+//
+// Of all processes of one role and index, the server serves the one of the greatest incarnation. It
+// refuses the others, whatever of theirs arrives and when, and a refused process ends with the
+// reason: two that live at a time do not take turns.
 #pragma once
 
 #include <chrono>
@@ -11,6 +15,7 @@
 #include <optional>
 #include <string>
 
+#include "proto/system/clock.h"
 #include "proto/wire/bytes.h"
 #include "proto/wire/codec.h"
 #include "proto/wire/messages.h"
@@ -28,7 +33,7 @@ struct ClientIdentity {
   std::string run_id;
   Role role = Role::kActor;
   std::uint32_t index = 0;
-  std::uint64_t incarnation = 0;  // e.g. nanoseconds since 1970 at the process's start
+  std::uint64_t incarnation = 0;  // proto/system/identity.h
 };
 
 struct ClientLimits {
@@ -42,8 +47,10 @@ struct ClientLimits {
 // One client's side of one connection.
 class Client {
  public:
-  // `peer` names the server in messages ("replay server"). Connects in the background.
-  Client(Address server, std::string peer, ClientIdentity identity, ClientLimits limits);
+  // `peer` names the server in messages ("replay server"). Connects in the background. With a
+  // clock that stands still, `receive` is to be called without patience.
+  Client(Address server, std::string peer, ClientIdentity identity, ClientLimits limits,
+         Clock clock = steady_now);
   ~Client();
   Client(const Client&) = delete;
   Client& operator=(const Client&) = delete;
@@ -93,7 +100,7 @@ class Server {
   Server& operator=(const Server&) = delete;
 
   // The next new request, or nothing when `patience` is over or a signal comes first. Repeated
-  // requests are answered here; foreign protocols, runs and old incarnations are refused here;
+  // requests are answered here; foreign protocols, runs and lesser incarnations are refused here;
   // anything malformed is dropped and counted. Requests of one client come in their order, each
   // once. A client's new incarnation starts again at 1 and makes the old one's unanswered requests
   // void; one whose first request is another is refused: it spoke to this server's predecessor.

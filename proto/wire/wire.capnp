@@ -25,7 +25,8 @@ struct Header {
                            # (and drops more than 64 bytes)
   role @2 :Role;           # of the client
   index @3 :UInt32;        # of the client among its role: 0 .. actors-1; 0 for the learner
-  incarnation @4 :UInt64;  # grows with every start of the client; an older one is refused
+  incarnation @4 :UInt64;  # grows with every start of the client (proto/system/identity.h): a
+                           # lesser one is refused, also when it has never been seen
   sequence @5 :UInt64;     # of the request, from 1; a reply carries its request's
   kind @6 :Kind;
   refusal @7 :Text;        # of `refused`: one line for people, at most 512 bytes

@@ -130,7 +130,7 @@ int serve(const Load& load, const Address& address, const std::filesystem::path&
     const RowLayout layout = layout_of(load);
     replay::ReplayService service(config, {layout, layout});
     MetricsWriter metrics(metrics_file);
-    replay::serve(server, service, metrics, config, stop_requested);
+    replay::serve(server, service, metrics, config, {stop_requested});
     return 0;
   });
 }

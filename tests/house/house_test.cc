@@ -67,7 +67,7 @@ const std::vector<std::pair<std::string, std::vector<std::string>>> kRooms = {
     {"proto/settings/", {"proto/base/"}},
     {"proto/system/", {"proto/base/"}},
     {"proto/config/", {"proto/base/", "proto/settings/", "proto/system/"}},
-    {"proto/wire/", {"proto/base/", "proto/settings/"}},
+    {"proto/wire/", {"proto/base/", "proto/settings/", "proto/system/"}},
     {"proto/run/", {"proto/base/", "proto/settings/", "proto/system/", "proto/config/"}},
     {"scenarios/", {"proto/base/", "proto/settings/", "proto/system/"}},
     {"actor/algebra/", {}},

@@ -8,6 +8,7 @@
 
 #include "proto/base/failure.h"
 #include "proto/wire/codec.h"
+#include "tests/learner/scripted_server.h"
 #include "tests/learner/small_run.h"
 
 namespace corridor::learner {
@@ -15,42 +16,6 @@ namespace {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
-
-// A replay server that notes what it is asked and answers by a script.
-class ScriptedServer {
- public:
-  explicit ScriptedServer(std::function<std::optional<ReplayReply>(const ReplayRequest&)> script)
-      : script_(std::move(script)), thread_([this] { serve(); }) {}
-  ~ScriptedServer() {
-    end_ = true;
-    thread_.join();
-  }
-  const std::string& address() const { return address_; }
-  // Once the server has ended.
-  const std::vector<ReplayRequest>& end() {
-    end_ = true;
-    thread_.join();
-    thread_ = std::thread([] {});
-    return requests_;
-  }
-
- private:
-  void serve() {
-    Server server(address_, kRunId);
-    while (!end_) {
-      const auto request = server.receive(Duration{5});
-      if (!request) continue;
-      requests_.push_back(decode_replay_request(request->body));
-      if (const auto reply = script_(requests_.back())) server.reply(*request, encode(*reply));
-    }
-  }
-
-  const std::string address_ = fresh_address("scripted");
-  std::function<std::optional<ReplayReply>(const ReplayRequest&)> script_;
-  std::atomic<bool> end_ = false;
-  std::vector<ReplayRequest> requests_;
-  std::thread thread_;
-};
 
 struct Connection {
   explicit Connection(const ScriptedServer& server)

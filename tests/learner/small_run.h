@@ -24,6 +24,7 @@
 #include "proto/wire/endpoint.h"
 #include "replay/replay_service.h"
 #include "replay/serve.h"
+#include "tests/support/manual_clock.h"
 
 namespace corridor::learner {
 
@@ -103,10 +104,17 @@ class SmallRun {
       : config_(std::move(config)), schedule_(config_), directory_(directory) {}
 
   // Round of which actors send nothing: once its block is next, they go, and the learner is asked
-  // to stop.
+  // to stop; or, if they hang, minutes pass for it whenever it looks whether it is.
   std::uint64_t actors_end_at = UINT64_MAX;
+  bool actors_hang = false;
   // Asks the learner to stop once an actor has got this version.
   std::uint64_t stop_at_version = UINT64_MAX;
+
+  // The learner's, before each round.
+  TestDelay delay = [] {};
+  // An actor's, before it sends a round's chunk.
+  std::function<void(std::uint64_t round, std::uint32_t actor)> before_chunk = [](std::uint64_t,
+                                                                                  std::uint32_t) {};
 
   // From the newest checkpoint on; what Training::run returns. Throws what any thread has thrown.
   bool run() {
@@ -150,10 +158,14 @@ class SmallRun {
                   {});
     TimeAccount time;
     ReplayClient replay(client, time, [&] { publisher.service(Duration::zero()); });
-    Training training(config_,
-                      {directory_, replay, publisher, metrics, time,
-                       [&] { return stop_learner_.load(); }, Duration{10}},
-                      load_state(config_, directory_));
+    const auto stop = [&] {
+      if (minutes_pass_) clock_.advance(std::chrono::minutes(1));
+      return stop_learner_.load();
+    };
+    Training training(
+        config_,
+        {directory_, replay, publisher, metrics, time, stop, Duration{0}, delay, clock_.clock()},
+        load_state(config_, directory_));
     return training.run();
   }
 
@@ -163,7 +175,7 @@ class SmallRun {
       service.load(*checkpoint);
     MetricsWriter metrics(directory_.metrics("replay"));
     Server server(address, kRunId);
-    replay::serve(server, service, metrics, config_, [&] { return end_.load(); });
+    replay::serve(server, service, metrics, config_, {[&] { return end_.load(); }});
   }
 
   // Nothing at the end of the run.
@@ -192,13 +204,14 @@ class SmallRun {
       const Weights got = std::get<Weights>(decode_learner_reply(*body));
       note(got);
       if (goes) {
-        stop_learner_ = true;
+        (actors_hang ? minutes_pass_ : stop_learner_) = true;
         return;
       }
       if (schedule_.selects_in(round)) {
         learner.send(encode(LearnerRequest(made_up_outcome(round, actor))));
         if (!answer(learner)) return;
       }
+      before_chunk(round, actor);
       replay.send(encode(ReplayRequest(made_up_chunk(config_, round, actor, got))));
       if (!answer(replay)) return;
     }
@@ -214,6 +227,8 @@ class SmallRun {
   const Schedule schedule_;
   const RunDirectory& directory_;
   std::atomic<bool> stop_learner_ = false;
+  std::atomic<bool> minutes_pass_ = false;
+  testing_support::ManualClock clock_;
   std::atomic<bool> end_ = false;
   std::mutex mutex_;
   std::string error_;

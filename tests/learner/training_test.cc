@@ -7,10 +7,12 @@
 #include <fstream>
 
 #include "learner/torch_q_network.h"
-#include "proto/base/failure.h"
 #include "proto/base/json.h"
 #include "proto/run/tensor_file.h"
+#include "tests/learner/scripted_server.h"
 #include "tests/learner/small_run.h"
+#include "tests/support/failure_of.h"
+#include "tests/support/manual_clock.h"
 #include "tests/support/temporary_directory.h"
 
 namespace corridor::learner {
@@ -128,13 +130,82 @@ TEST(Training, FreezesTheBestMopForTheBpsPhase) {
   EXPECT_EQ(place.newest("learner.safetensors").get<float>("mop", "file"), expected);
 }
 
-TEST(Training, GivesTheSameBitsInEachRun) {
-  Place one, two;
-  RunConfig slowed = small_config();
-  slowed.run.delay_ms_max = 5.0;
-  SmallRun(small_config(), one.directory).run();
-  SmallRun(slowed, two.directory).run();
-  expect_same_end(one, two);
+// `value` is at least so much.
+void wait_for(const std::atomic<std::uint64_t>& value, std::uint64_t least) {
+  for (std::uint64_t seen = value; seen < least; seen = value) value.wait(seen);
+}
+
+TEST(Training, GivesTheSameBitsHoweverLateTheChunksComeAndInWhichOrder) {
+  Place undisturbed;
+  SmallRun(small_config(), undisturbed.directory).run();
+  for (std::uint32_t last = 0; last < kActors; ++last) {
+    Place late;
+    SmallRun run(small_config(), late.directory);
+    std::atomic<std::uint64_t> begun = 0;   // rounds, by the learner, which then waits
+    std::atomic<std::uint64_t> others = 0;  // chunks that the other actor sends
+    const auto count = [](std::atomic<std::uint64_t>& counter) {
+      ++counter;
+      counter.notify_all();
+    };
+    run.delay = [&] { count(begun); };
+    run.before_chunk = [&](std::uint64_t round, std::uint32_t actor) {
+      wait_for(begun, round + 1);
+      if (actor == last) {
+        wait_for(others, round + 1);
+      } else {
+        count(others);
+      }
+    };
+    EXPECT_TRUE(run.run());
+    expect_same_end(undisturbed, late);
+  }
+}
+
+TEST(Training, GivesUpOnActorsThatHangInABlockOrInAnEvaluationAfterHalfAnHour) {
+  const auto failure = [](std::uint64_t round) {
+    Place place;
+    SmallRun run(small_config(), place.directory);
+    run.actors_hang = true;
+    run.actors_end_at = round;
+    return failure_of([&] { run.run(); });
+  };
+  EXPECT_THAT(failure(4), HasSubstr("round 4: chunks of actors are missing for 30 min"));
+  EXPECT_THAT(failure(3),
+              HasSubstr("round 3: actors 0, 1 have not reported their evaluation in 30 min"));
+}
+
+TEST(Training, GivesUpOnACheckpointThatIsNotCompleteAfterHalfAnHour) {
+  Place place;
+  ScriptedServer server([](const ReplayRequest& request) -> std::optional<ReplayReply> {
+    if (std::holds_alternative<Join>(request)) return Joined{};
+    if (std::holds_alternative<OpenBlock>(request)) return Opened{0};
+    return Saved{false};
+  });
+  Server socket(fresh_address("learner"), kRunId);
+  Publisher publisher(socket, kActors);
+  Client client(server.address(), "replay server", {kRunId, Role::kLearner, 0, 1}, {});
+  TimeAccount account;
+  ReplayClient replay(client, account, [] {});
+  MetricsWriter metrics(place.directory.metrics("learner"));
+  // Asked to stop after the first block.
+  int rounds = 0;
+  testing_support::ManualClock time;
+  const Clock minutes = [&] {
+    time.advance(std::chrono::minutes(1));
+    return time.now();
+  };
+  Training training(small_config(),
+                    {.directory = place.directory,
+                     .replay = replay,
+                     .publisher = publisher,
+                     .metrics = metrics,
+                     .time = account,
+                     .stop_requested = [&] { return rounds > 0; },
+                     .delay = [&] { ++rounds; },
+                     .clock = minutes},
+                    initial_state(small_config()));
+  EXPECT_THAT(failure_of([&] { training.run(); }),
+              HasSubstr("a checkpoint is not complete after 30 min"));
 }
 
 TEST(Training, GoesOnBitForBitAfterAStopInAnyRound) {
@@ -215,7 +286,7 @@ TEST(Training, RefusesAReplayServerAtAnotherRound) {
     replay::ReplayService service(small_config());  // at the start, without the checkpoint
     MetricsWriter metrics(place.temporary.path() / "replay.jsonl");
     Server replay_socket(address, kRunId);
-    replay::serve(replay_socket, service, metrics, small_config(), [&] { return end.load(); });
+    replay::serve(replay_socket, service, metrics, small_config(), {[&] { return end.load(); }});
   });
   Client client(address, "replay server", {kRunId, Role::kLearner, 0, 1}, {});
   TimeAccount time;
@@ -224,12 +295,7 @@ TEST(Training, RefusesAReplayServerAtAnotherRound) {
   Training training(small_config(),
                     {place.directory, replay, publisher, metrics, time, [] { return false; }},
                     place.state());
-  try {
-    training.run();
-    ADD_FAILURE() << "no Failure";
-  } catch (const Failure& failure) {
-    EXPECT_THAT(failure.what(), HasSubstr("round 0, the learner with round 11"));
-  }
+  EXPECT_THAT(failure_of([&] { training.run(); }), HasSubstr("round 0, the learner with round 11"));
   end = true;
   replay_server.join();
 }

@@ -13,8 +13,10 @@
 
 #include "proto/base/failure.h"
 #include "proto/base/json.h"
+#include "proto/system/log.h"
 #include "proto/wire/codec.h"
 #include "tests/replay/small_run.h"
+#include "tests/support/manual_clock.h"
 #include "tests/support/temporary_directory.h"
 
 namespace corridor::replay {
@@ -30,7 +32,6 @@ constexpr std::uint64_t kManyRounds = 33;
 RunConfig longer_config() {
   RunConfig config = small_config();
   config.dqn[0].steps = 20 * kActors * static_cast<std::int64_t>(kManyRounds);
-  config.run.delay_ms_max = 0.1;
   return config;
 }
 
@@ -52,7 +53,8 @@ class ServeTest : public testing::Test {
       ReplayService service(config);
       MetricsWriter metrics(directory_ / "replay.jsonl");
       Server server(address_, kRunId);
-      serve(server, service, metrics, config, [this] { return stop_.load(); });
+      serve(server, service, metrics, config,
+            {[this] { return stop_.load(); }, [this] { ++delays_; }, time_.clock()});
     });
   }
   ~ServeTest() override {
@@ -87,6 +89,8 @@ class ServeTest : public testing::Test {
   fs::path directory_ = temporary_.path();
   Address address_;
   std::atomic<bool> stop_ = false;
+  std::atomic<std::uint64_t> delays_ = 0;
+  testing_support::ManualClock time_;
   std::thread thread_;
 };
 
@@ -120,6 +124,7 @@ TEST_F(ServeTest, ClientsGetWhatTheServiceAloneWouldAnswer) {
     }
   }
 
+  EXPECT_EQ(delays_, kManyRounds * (kActors + 1)) << "once a chunk and a block";
   std::ifstream file(directory_ / "replay.jsonl");
   const Json line = Json::parse(file);
   EXPECT_EQ(line.at("round"), 31);
@@ -130,6 +135,22 @@ TEST_F(ServeTest, ClientsGetWhatTheServiceAloneWouldAnswer) {
                            "time/sample", "time/transport", "time/wall_s", "time/cpu_s"}) {
     EXPECT_GT(line.at(name), 0.0) << name;
   }
+}
+
+TEST_F(ServeTest, SaysWhomItWaitsForWhenABlockStaysUnopenedForLong) {
+  start_log("test");
+  testing::internal::CaptureStderr();
+  Client learner = connect(Role::kLearner, 0);
+  learner.send(encode(ReplayRequest{OpenBlock{0}}));
+  while (delays_ == 0) learner.receive(Duration{1});
+  Client actor = connect(Role::kActor, 1);
+  // Each is answered in a turn of its own: the first after the block's, the last after the chunk's.
+  ask(actor, Join{});
+  time_.advance(std::chrono::seconds(6));
+  ask(actor, mop_chunk(0, 1));
+  ask(actor, Join{});
+  EXPECT_THAT(testing::internal::GetCapturedStderr(),
+              HasSubstr("block 0 waits for the chunks of actors 0 2"));
 }
 
 TEST_F(ServeTest, NonsenseIsRefusedAndTheServerGoesOn) {

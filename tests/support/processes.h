@@ -35,4 +35,14 @@ inline std::vector<Process> processes_with(const std::string& text) {
   return found;
 }
 
+// Whether a signal has stopped it.
+inline bool is_stopped(pid_t pid) {
+  std::ifstream in("/proc/" + std::to_string(pid) + "/stat");
+  std::string text;
+  std::getline(in, text);
+  // "<pid> (<name>) <state> ..."
+  const std::size_t state = text.rfind(") ");
+  return state != std::string::npos && text.substr(state + 2, 1) == "T";
+}
+
 }  // namespace corridor::testing_support

@@ -5,6 +5,7 @@
 #include <pthread.h>
 #include <signal.h>
 #include <sys/prctl.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -12,6 +13,8 @@
 #include <optional>
 
 #include "proto/base/failure.h"
+#include "tests/support/manual_clock.h"
+#include "tests/support/processes.h"
 #include "tests/support/temporary_directory.h"
 
 namespace corridor::cluster {
@@ -20,20 +23,25 @@ namespace {
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::ThrowsMessage;
+using testing_support::is_stopped;
+
+// A shell's last line: goes on until a signal's trap ends it, and runs the traps of others.
+constexpr const char* kForEver = "while :; do sleep 600 & wait $!; done";
 
 // Long enough for a busy machine; nothing here takes as long when it works.
-constexpr Limits kLimits{.tick = Milliseconds(5),
-                         .checkpoint = Milliseconds(10'000),
-                         .others = Milliseconds(10'000),
-                         .after_work = Milliseconds(10'000),
-                         .repeated_signal = Milliseconds(0)};
+const Limits kLimits{.tick = Milliseconds(5),
+                     .checkpoint = Milliseconds(10'000),
+                     .others = Milliseconds(10'000),
+                     .after_work = Milliseconds(10'000),
+                     .repeated_signal = Milliseconds(0)};
 
 class Local : public testing::Test {
  protected:
   ~Local() override { prctl(PR_SET_CHILD_SUBREAPER, 0); }  // some tests set it
 
   // A shell script that first writes its process id into <name>.pid. `exec sleep` makes the shell
-  // itself the sleeper.
+  // itself the sleeper. Scripts wait for each other by `event`s: neither sleeps for a while nor
+  // spins.
   ProcessPlan script(const std::string& name, const std::string& commands) const {
     const std::string pid = file(name + ".pid");
     return {name,
@@ -42,6 +50,16 @@ class Local : public testing::Test {
             file(name + ".log")};
   }
   std::filesystem::path file(const std::string& name) const { return temporary_.path() / name; }
+  // A new pipe: what `wait` waits for, and `tell` says, once for each `wait`.
+  struct Event {
+    std::string wait;
+    std::string tell;
+  };
+  Event event(const std::string& name) const {
+    const std::string pipe = file(name).string();
+    EXPECT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+    return {"read told < " + pipe + "\n", "echo > " + pipe + "\n"};
+  }
   bool exists(const std::string& name) const { return std::filesystem::exists(file(name)); }
   std::string content(const std::string& name) const {
     std::ifstream in(file(name));
@@ -67,21 +85,22 @@ class Local : public testing::Test {
 };
 
 TEST_F(Local, WhenTheMainProcessIsDoneTheOthersAreEnded) {
-  const auto plan = {
-      script("server", "exec sleep 600"),
-      script("main", "while [ ! -e " + file("server.pid").string() + " ]; do :; done")};
+  const Event ready = event("ready");
+  const auto plan = {script("server", ready.tell + "exec sleep 600"), script("main", ready.wait)};
   EXPECT_EQ(run_together(plan, "main", kLimits, {}).signal, 0);
   expect_gone("server");
 }
 
 TEST_F(Local, OneThatIgnoresTheRequestToEndIsKilled) {
+  // Its time is over when it has been asked.
   Limits limits = kLimits;
-  limits.after_work = Milliseconds(20);
+  limits.clock = [&] { return TimePoint(exists("asked") ? kLimits.after_work : Milliseconds(0)); };
+  const Event ready = event("ready");
   const auto plan = {
-      script("deaf",
-             "trap '' TERM; : > " + file("deaf.ready").string() + "; while :; do sleep 600; done"),
-      script("main", "while [ ! -e " + file("deaf.ready").string() + " ]; do :; done")};
+      script("deaf", "trap ': > " + file("asked").string() + "' TERM\n" + ready.tell + kForEver),
+      script("main", ready.wait)};
   EXPECT_EQ(run_together(plan, "main", limits, {}).signal, 0);
+  EXPECT_TRUE(exists("asked"));
   expect_gone("deaf");
 }
 
@@ -98,12 +117,12 @@ TEST_F(Local, WhatAProcessStartedItselfEndsWithIt) {
 
 TEST_F(Local, AFailureEndsAllAndSaysWhichProcessWhyAndWhereItsLogIs) {
   std::ofstream(file("actor.log")) << "error: of an earlier run\n";
-  const auto plan = {
-      script("main", "exec sleep 600"), script("server", "exec sleep 600"),
-      script("actor", "while [ ! -e " + file("main.pid").string() + " -o ! -e " +
-                          file("server.pid").string() +
-                          " ]; do :; done\n"
-                          "echo actor: error: SUMO is missing >&2; echo bye; exit 1")};
+  const Event main = event("main"), server = event("server");
+  const auto plan = {script("main", main.tell + "exec sleep 600"),
+                     script("server", server.tell + "exec sleep 600"),
+                     script("actor", main.wait + server.wait +
+                                         "echo actor: error: SUMO is missing >&2\n"
+                                         "echo bye; exit 1")};
   EXPECT_THAT([&] { run_together(plan, "main", kLimits, {}); },
               ThrowsMessage<Failure>("actor ended with status 1: actor: error: SUMO is missing; "
                                      "log: " +
@@ -132,12 +151,13 @@ TEST_F(Local, WhileTheWorkAdvancesDeathsAreNoReasonToGiveUp) {
 
 TEST_F(Local, AReplaceableProcessIsStartedAgainByItself) {
   const std::string starts = file("starts").string();
-  ProcessPlan actor = script("actor", "echo x >> " + starts + "; [ $(wc -l < " + starts +
-                                          ") -ge 3 ] || kill -9 $$; exec sleep 600");
+  const Event third = event("third");
+  ProcessPlan actor =
+      script("actor", "echo x >> " + starts + "; [ $(wc -l < " + starts +
+                          ") -ge 3 ] || kill -9 $$\n" + third.tell + "exec sleep 600");
   actor.replaceable = true;
   const auto plan = {actor,
-                     script("main", "echo x >> " + file("mains").string() + "; until [ $(wc -l < " +
-                                        starts + ") -ge 3 ]; do :; done 2> /dev/null")};
+                     script("main", "echo x >> " + file("mains").string() + "\n" + third.wait)};
   std::vector<std::string> deaths;
   Supervision supervision;
   supervision.died = [&](const Ended& ended, bool all) {
@@ -173,11 +193,11 @@ TEST_F(Local, OneThatEndsWellBeforeTheWorkIsDoneIsMissed) {
   ProcessPlan actor = script("actor", "exit 0");
   actor.ends_by_itself = true;
   const std::string servers = file("servers").string();
-  const auto plan = {
-      actor,
-      script("server", "echo x >> " + servers + "; [ $(wc -l < " + servers +
-                           ") -ge 2 ] || exit 0; exec sleep 600"),
-      script("main", "until [ $(wc -l < " + servers + ") -ge 2 ]; do :; done 2> /dev/null")};
+  const Event second = event("second");
+  const auto plan = {actor,
+                     script("server", "echo x >> " + servers + "; [ $(wc -l < " + servers +
+                                          ") -ge 2 ] || exit 0\n" + second.tell + "exec sleep 600"),
+                     script("main", second.wait)};
   std::vector<std::string> died;
   Supervision supervision;
   supervision.died = [&](const Ended& ended, bool) { died.push_back(ended.name); };
@@ -186,18 +206,22 @@ TEST_F(Local, OneThatEndsWellBeforeTheWorkIsDoneIsMissed) {
 }
 
 TEST_F(Local, OneWithoutASignOfLifeIsKilledAndStartedAgain) {
-  // The first is stopped, as by a debugger or a dead disk; a shell has no pulse of its own, so that
-  // the limit must be longer than the second takes.
-  Limits limits = kLimits;
-  limits.hung = Milliseconds(1000);
+  // The first is stopped, as by a debugger or a dead disk, and from then on time passes.
   const std::string starts = file("starts").string();
   const auto plan = script(
       "main", "echo x >> " + starts + "; [ $(wc -l < " + starts + ") -ge 2 ] || kill -STOP $$");
+  testing_support::ManualClock time;
+  Limits limits = kLimits;
+  limits.clock = time.clock();
   std::string cause;
-  Supervision supervision;
+  Supervision supervision = ticking([&] {
+    if (pid_of("main") > 0 && is_stopped(pid_of("main"))) time.advance(std::chrono::seconds(1));
+  });
   supervision.died = [&](const Ended& ended, bool) { cause = ended.cause(); };
   EXPECT_EQ(run_together({plan}, "main", limits, supervision).signal, 0);
   EXPECT_THAT(cause, HasSubstr("main was killed, since it hung"));
+  EXPECT_GE(time.now(), TimePoint(kLimits.hung));
+  EXPECT_EQ(content("starts"), "x\nx\n");
 }
 
 TEST_F(Local, AProgramThatIsNotThereIsAFailureAndEndsThoseStartedBefore) {
@@ -216,7 +240,7 @@ TEST_F(Local, ASignalStopsTheMainProcessFirstSoThatItCanFinishWithTheOthersHelp)
   const auto plan = {script("server", "exec sleep 600"),
                      script("main", "trap 'kill -0 $(cat " + file("server.pid").string() +
                                         ") && echo together; exit 0' TERM; : > " +
-                                        file("main.ready").string() + "; while :; do :; done")};
+                                        file("main.ready").string() + "\n" + kForEver)};
   const Ending ending = run_together(plan, "main", kLimits, ticking([&] {
                                        if (exists("main.ready") && exists("server.pid"))
                                          kill(getpid(), SIGINT);
@@ -230,10 +254,11 @@ TEST_F(Local, ASignalStopsTheMainProcessFirstSoThatItCanFinishWithTheOthersHelp)
 TEST_F(Local, ASecondSignalKillsAtOnceWhateverIsStillGoingOn) {
   // The main process answers the first signal with the second, and would go on for ever.
   const auto plan = {script("main", "trap 'kill -INT " + std::to_string(getpid()) + "' TERM; : > " +
-                                        file("main.ready").string() + "; while :; do :; done")};
+                                        file("main.ready").string() + "\n" + kForEver)};
   bool sent = false;
+  testing_support::ManualClock stands_still;
   Limits limits = kLimits;
-  limits.checkpoint = Milliseconds(600'000);
+  limits.clock = stands_still.clock();
   const Ending ending = run_together(plan, "main", limits, ticking([&] {
                                        if (exists("main.ready") && !std::exchange(sent, true))
                                          kill(getpid(), SIGTERM);
@@ -245,9 +270,11 @@ TEST_F(Local, ASecondSignalKillsAtOnceWhateverIsStillGoingOn) {
 TEST_F(Local, TheSameSignalTwiceInAMomentIsOne) {
   const auto plan = {script("main", "trap 'kill -TERM " + std::to_string(getpid()) +
                                         "; echo finished; exit 0' TERM; : > " +
-                                        file("main.ready").string() + "; while :; do :; done")};
+                                        file("main.ready").string() + "\n" + kForEver)};
+  testing_support::ManualClock stands_still;
   Limits limits = kLimits;
-  limits.repeated_signal = Milliseconds(600'000);
+  limits.repeated_signal = Milliseconds(1);
+  limits.clock = stands_still.clock();
   const Ending ending = run_together(plan, "main", limits, ticking([&] {
                                        if (exists("main.ready")) kill(getpid(), SIGTERM);
                                      }));
@@ -311,10 +338,10 @@ TEST_F(Local, AQueueRunsEveryProcessAndNoMoreAtATimeThanAllowed) {
 }
 
 TEST_F(Local, AQueueEndsWithItsFirstFailure) {
-  const std::vector<ProcessPlan> plan = {
-      script("good", "exec sleep 600"),
-      script("bad", "while [ ! -e " + file("good.pid").string() + " ]; do :; done; exit 2"),
-      script("never", "exit 0")};
+  const Event good = event("good");
+  const std::vector<ProcessPlan> plan = {script("good", good.tell + "exec sleep 600"),
+                                         script("bad", good.wait + "exit 2"),
+                                         script("never", "exit 0")};
   EXPECT_THAT([&] { run_queue(plan, 2, kLimits, [] {}); },
               ThrowsMessage<Failure>(HasSubstr("bad ended with status 2")));
   expect_gone("good");
@@ -332,10 +359,14 @@ TEST_F(Local, AProcessThatIsStoppedBeforeItIsItsProgramIsFoundAsHungAndStartedAg
                 }),
             0);
   stop_next_child = true;
+  testing_support::ManualClock time;
   Limits limits = kLimits;
-  limits.hung = Milliseconds(1000);
+  limits.clock = time.clock();
+  limits.start = Milliseconds(0);
   int deaths = 0;
-  Supervision supervision;
+  Supervision supervision = ticking([&] {
+    if (!exists("main.pid")) time.advance(std::chrono::seconds(1));
+  });
   supervision.died = [&](const Ended& ended, bool) {
     EXPECT_TRUE(ended.hung);
     ++deaths;

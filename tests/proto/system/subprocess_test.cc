@@ -2,8 +2,12 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
 
 #include <cstdlib>
+#include <fstream>
+#include <thread>
 
 #include "proto/base/failure.h"
 #include "tests/support/temporary_directory.h"
@@ -44,12 +48,19 @@ TEST(Subprocess, OfWhichBothOutputsAreFullDoesNotHang) {
 }
 
 TEST(Subprocess, IsKilledAtTheDeadline) {
-  EXPECT_EQ(run_subprocess("/bin/sh", {"-c", "exec sleep 1000"}, "", std::chrono::milliseconds(50)),
-            std::nullopt);
+  // None is left: killed and reaped.
+  EXPECT_EQ(run_subprocess("/bin/sleep", {"1000"}, "", std::chrono::milliseconds(0)), std::nullopt);
+  EXPECT_EQ(waitpid(-1, nullptr, WNOHANG), -1);
 }
 
-TEST(Subprocess, ThatClosesItsOutputsAndLivesOnIsKilled) {
-  EXPECT_EQ(shell("exec sleep 1000 >&- 2>&-").status, 128 + 9);
+TEST(Subprocess, ThatClosesItsOutputsAndWorksOnIsWaitedFor) {
+  // It opens the pipe with its outputs closed, and ends once it has read.
+  testing_support::TemporaryDirectory temporary;
+  const std::filesystem::path pipe = temporary.path() / "pipe";
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  std::thread opener([&] { std::ofstream(pipe) << "end\n"; });
+  EXPECT_EQ(shell("exec >&- 2>&-; read line < " + pipe.string() + "; exit 4").status, 4);
+  opener.join();
 }
 
 TEST(Subprocess, ThatCannotBeStartedIsNamed) {

@@ -11,13 +11,16 @@
 
 #include "proto/base/format.h"
 #include "proto/base/random.h"
+#include "proto/system/identity.h"
 #include "tests/support/failure_of.h"
+#include "tests/support/manual_clock.h"
 
 namespace corridor {
 namespace {
 
-using std::chrono::milliseconds;
+using std::chrono::seconds;
 using testing::HasSubstr;
+using testing_support::ManualClock;
 
 const std::string kRun(32, 'a');
 constexpr Duration kSoon{10'000};  // for what must come: reached only by a failing test
@@ -76,6 +79,36 @@ class RawClient {
  private:
   zmq::context_t context_;
   zmq::socket_t socket_{context_, zmq::socket_type::dealer};
+};
+
+// A server without manners: sends to its only client what the test says.
+class RawServer {
+ public:
+  explicit RawServer(const Address& address) {
+    socket_.set(zmq::sockopt::linger, 0);
+    socket_.set(zmq::sockopt::rcvtimeo, static_cast<int>(kSoon.count()));
+    socket_.bind(address);
+  }
+  // The next request's.
+  Header receive() {
+    zmq::message_t head, body;
+    if (!socket_.recv(route_) || !socket_.recv(head) || !socket_.recv(body)) {
+      throw std::runtime_error("no request");
+    }
+    return decode_header({static_cast<const std::byte*>(head.data()), head.size()});
+  }
+  void send_frames(const std::vector<Bytes>& frames) {
+    socket_.send(zmq::buffer(route_.data(), route_.size()), zmq::send_flags::sndmore);
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+      socket_.send(zmq::buffer(frames[i]),
+                   i + 1 < frames.size() ? zmq::send_flags::sndmore : zmq::send_flags::none);
+    }
+  }
+
+ private:
+  zmq::context_t context_;
+  zmq::socket_t socket_{context_, zmq::socket_type::router};
+  zmq::message_t route_;
 };
 
 TEST(Endpoint, ARequestIsAnswered) {
@@ -303,8 +336,7 @@ TEST(Endpoint, ForeignProtocolsAndRunsAreRefusedAndToldWhy) {
   header = RawClient::header(1);
   header.run_id = std::string(32, 'b');
   raw.send_frames({encode(header), {}});
-  EXPECT_FALSE(server.receive(Duration(100)));
-  EXPECT_EQ(server.dropped(), 2U);
+  while (server.dropped() < 2) ASSERT_FALSE(server.receive(kBrief));
   EXPECT_THAT(raw.receive().first.refusal,
               HasSubstr(fmt::format("protocol {}, you 99", kProtocolVersion)));
   EXPECT_THAT(raw.receive().first.refusal, HasSubstr("another run"));
@@ -354,6 +386,45 @@ TEST(Endpoint, ANewIncarnationTakesThePlaceOfTheOld) {
   EXPECT_THAT(refused.first.refusal, HasSubstr("newer process"));
 }
 
+TEST(Endpoint, TheFirstMessageOfADeadPredecessorIsRefusedHoweverLateItComes) {
+  const Address address = fresh_address();
+  Server server(address, kRun);
+  RawClient dead(address), successor(address);
+  const std::uint64_t before = incarnation_of(1, ~std::uint64_t{0}), after = incarnation_of(2, 0);
+  successor.request(1, "join", after);
+  server.reply(server.receive(kSoon).value(), bytes_of("welcome"));
+  EXPECT_EQ(successor.receive().second, "welcome");
+
+  dead.request(1, "late join", before);
+  while (server.dropped() == 0) ASSERT_FALSE(server.receive(kBrief));
+  EXPECT_THAT(dead.receive().first.refusal, HasSubstr("newer process"));
+
+  successor.request(2, "next", after);
+  EXPECT_EQ(text_of(server.receive(kSoon).value().body), "next");
+}
+
+TEST(Endpoint, OfTwoLivingProcessesInOnePlaceOneIsRefusedForGood) {
+  const Address address = fresh_address();
+  Server server(address, kRun);
+  Client first(address, "server", actor(0, incarnation_of(0, 1ull << 32)), quick());
+  Client second(address, "server", actor(0, incarnation_of(0, 2ull << 32)), quick());
+  first.send(bytes_of("first"));
+  server.receive(kSoon).value();
+  second.send(bytes_of("second"));
+  const IncomingRequest request = server.receive(kSoon).value();
+  EXPECT_EQ(text_of(request.body), "second");
+  // The first asks again, and ends.
+  const std::string failure = failure_of([&] {
+    for (int i = 0; i < 2000; ++i) {
+      first.receive(kBrief);
+      ASSERT_FALSE(server.receive(kBrief));
+    }
+  });
+  EXPECT_THAT(failure, HasSubstr("newer process has taken your place"));
+  server.reply(request, bytes_of("answer"));
+  EXPECT_EQ(text_of(second.receive(kSoon).value()), "answer");
+}
+
 TEST(Endpoint, AClientLearnsThatItsServerHasRestarted) {
   const Address address = fresh_address();
   auto server = std::make_unique<Server>(address, kRun);
@@ -390,28 +461,48 @@ TEST(Endpoint, AServerThatStartsLaterIsFound) {
 
 TEST(Endpoint, ASilentPeerIsLostAfterTheTimeout) {
   const Address address = fresh_address();
-  Client client(address, "replay server", actor(0),
-                {.resend_after = Duration(10), .peer_timeout = Duration(50), .window = 8});
+  ManualClock time;
+  Client client(address, "replay server", actor(0), {}, time.clock());
   client.send({});
-  EXPECT_EQ(failure_of([&] { client.receive(kSoon); }),
+  for (int second = 1; second < 30; ++second) {
+    time.advance(seconds(1));
+    ASSERT_FALSE(client.receive(Duration::zero()));
+  }
+  time.advance(seconds(1));
+  EXPECT_EQ(failure_of([&] { client.receive(Duration::zero()); }),
             "replay server at " + address +
-                " has been silent for 0.05 s: it has ended or cannot be reached");
+                " has been silent for 30 s: it has ended or cannot be reached");
+}
+
+TEST(Endpoint, TimeThatAClientSpendsElsewhereIsNoSilence) {
+  ManualClock time;
+  Client client(fresh_address(), "server", actor(0), {}, time.clock());
+  client.send({});
+  for (int look = 1; look < 30; ++look) {
+    time.advance(std::chrono::hours(1));
+    ASSERT_FALSE(client.receive(Duration::zero())) << "counts for a second each";
+  }
+  time.advance(std::chrono::hours(1));
+  EXPECT_THAT(failure_of([&] { client.receive(Duration::zero()); }), HasSubstr("silent"));
 }
 
 TEST(Endpoint, AServerThatMakesAClientWaitIsNotLost) {
   const Address address = fresh_address();
-  Server server(address, kRun);
-  const Duration timeout(400);
-  Client client(address, "server", actor(0),
-                {.resend_after = Duration(2), .peer_timeout = timeout, .window = 8});
+  RawServer server(address);
+  ManualClock time;
+  Client client(address, "server", actor(0), {}, time.clock());
   client.send({});
-  const auto parked = server.receive(kSoon);
-  const auto end = std::chrono::steady_clock::now() + 2 * timeout;
-  while (std::chrono::steady_clock::now() < end) {
-    ASSERT_FALSE(client.receive(Duration(4)));
-    ASSERT_FALSE(server.receive(Duration(1)));
+  Header header;
+  for (int second = 0; second < 300; ++second) {
+    header = server.receive();
+    EXPECT_EQ(header.sequence, 1U);
+    header.kind = MessageKind::kPending;
+    server.send_frames({encode(header), {}});
+    time.advance(seconds(1));
+    ASSERT_FALSE(client.receive(Duration::zero()));
   }
-  server.reply(parked.value(), bytes_of("at last"));
+  header.kind = MessageKind::kReply;
+  server.send_frames({encode(header), bytes_of("at last")});
   EXPECT_EQ(text_of(client.receive(kSoon).value()), "at last");
 }
 
@@ -470,15 +561,21 @@ TEST(Endpoint, HostNamesWorkOverTcp) {
 TEST(Endpoint, AMessageOfAbsurdSizeClosesItsConnectionOnly) {
   const Address address = fresh_address();
   Server server(address, kRun, {.window = 8, .clients = 8, .message_bytes = 1000});
-  Client greedy(address, "server", actor(0),
-                {.resend_after = Duration(20), .peer_timeout = Duration(100), .window = 8});
+  ManualClock time;
+  Client greedy(address, "server", actor(0), {}, time.clock());
   Client modest(address, "server", actor(1), {});
   greedy.send(Bytes(100'000));
   modest.send(Bytes(100));
   const auto request = server.receive(kSoon);
   ASSERT_TRUE(request);
   EXPECT_EQ(request->client.index, 1U);
-  EXPECT_THAT(failure_of([&] { greedy.receive(kSoon); }), HasSubstr("silent"));
+  const auto pass = [&] {
+    for (int second = 0; second < 30; ++second) {
+      time.advance(seconds(1));
+      greedy.receive(Duration::zero());
+    }
+  };
+  EXPECT_THAT(failure_of(pass), HasSubstr("silent"));
   EXPECT_FALSE(server.receive(Duration::zero()));
 }
 
@@ -515,21 +612,11 @@ TEST(Endpoint, AServerThatAnswersNonsenseIsAFailure) {
   };
   for (const auto& frames : nonsense) {
     const Address address = fresh_address();
-    zmq::context_t context;
-    zmq::socket_t router(context, zmq::socket_type::router);
-    router.set(zmq::sockopt::linger, 0);
-    router.set(zmq::sockopt::rcvtimeo, static_cast<int>(kSoon.count()));
-    router.bind(address);
+    RawServer server(address);
     Client client(address, "server", actor(0), {});
     client.send({});
-    zmq::message_t route, frame;
-    ASSERT_TRUE(router.recv(route));
-    while (router.get(zmq::sockopt::rcvmore)) ASSERT_TRUE(router.recv(frame));
-    router.send(route, zmq::send_flags::sndmore);
-    for (std::size_t i = 0; i < frames.size(); ++i) {
-      router.send(zmq::buffer(frames[i]),
-                  i + 1 < frames.size() ? zmq::send_flags::sndmore : zmq::send_flags::none);
-    }
+    server.receive();
+    server.send_frames(frames);
     EXPECT_THAT(failure_of([&] { client.receive(kSoon); }), HasSubstr("nonsense"));
   }
 }

@@ -1,0 +1,50 @@
+#include "proto/system/identity.h"
+
+#include <sys/random.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <charconv>
+#include <cstdlib>
+#include <cstring>
+#include <string_view>
+
+#include "proto/base/failure.h"
+
+namespace corridor {
+namespace {
+
+constexpr const char* kStarts = "CORRIDOR_STARTS";
+
+}  // namespace
+
+std::uint64_t random_64_bits() {
+  std::uint64_t bits = 0;
+  if (getrandom(&bits, sizeof bits, 0) == static_cast<ssize_t>(sizeof bits)) return bits;
+  throw Failure("the system gives no random numbers: {}", std::strerror(errno));
+}
+
+std::string host_name() {
+  std::array<char, 256> name{};
+  return gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "unknown";
+}
+
+std::uint64_t incarnation_of(std::uint32_t starts, std::uint64_t random) {
+  return std::uint64_t{starts} << 32 | random >> 32;
+}
+
+std::string start_environment(std::uint32_t starts) {
+  return fmt::format("{}={}", kStarts, starts);
+}
+
+std::uint64_t draw_incarnation() {
+  std::uint32_t starts = 0;
+  if (const char* const text = std::getenv(kStarts)) {
+    const std::string_view number = text;
+    std::from_chars(number.data(), number.data() + number.size(), starts);
+  }
+  return incarnation_of(starts, random_64_bits());
+}
+
+}  // namespace corridor
