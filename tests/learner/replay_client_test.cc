@@ -9,6 +9,7 @@
 #include "proto/base/failure.h"
 #include "proto/wire/codec.h"
 #include "tests/learner/small_run.h"
+#include "tests/support/batches.h"
 
 namespace corridor::learner {
 namespace {
@@ -16,10 +17,12 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
+using Script = std::function<std::optional<Body>(const ReplayRequest&)>;
+
 // A replay server that notes what it is asked and answers by a script.
 class ScriptedServer {
  public:
-  explicit ScriptedServer(std::function<std::optional<ReplayReply>(const ReplayRequest&)> script)
+  explicit ScriptedServer(Script script)
       : script_(std::move(script)), thread_([this] { serve(); }) {}
   ~ScriptedServer() {
     end_ = true;
@@ -41,12 +44,12 @@ class ScriptedServer {
       const auto request = server.receive(Duration{5});
       if (!request) continue;
       requests_.push_back(decode_replay_request(request->body));
-      if (const auto reply = script_(requests_.back())) server.reply(*request, encode(*reply));
+      if (const auto reply = script_(requests_.back())) server.reply(*request, *reply);
     }
   }
 
   const std::string address_ = fresh_address("scripted");
-  std::function<std::optional<ReplayReply>(const ReplayRequest&)> script_;
+  Script script_;
   std::atomic<bool> end_ = false;
   std::vector<ReplayRequest> requests_;
   std::thread thread_;
@@ -63,18 +66,17 @@ struct Connection {
 };
 
 // Keys count on from 0; a row's values are its key.
-std::function<std::optional<ReplayReply>(const ReplayRequest&)> batches() {
-  return
-      [key = std::uint64_t{0}](const ReplayRequest& request) mutable -> std::optional<ReplayReply> {
-        Batch batch;
-        batch.observations = 1;
-        for (std::uint32_t i = 0; i < std::get<Step>(request).count; ++i, ++key) {
-          batch.keys.push_back(key);
-          batch.weights.push_back(static_cast<float>(key));
-          batch.rows.insert(batch.rows.end(), RowLayout{1}.stride(), static_cast<float>(key));
-        }
-        return batch;
-      };
+Script batches() {
+  return [key = std::uint64_t{0}](const ReplayRequest& request) mutable -> std::optional<Body> {
+    Batch batch;
+    batch.observations = 1;
+    for (std::uint32_t i = 0; i < std::get<Step>(request).count; ++i, ++key) {
+      batch.keys.push_back(key);
+      batch.weights.push_back(static_cast<float>(key));
+      batch.rows.insert(batch.rows.end(), RowLayout{1}.stride(), static_cast<float>(key));
+    }
+    return testing_support::encoded(batch);
+  };
 }
 
 constexpr std::uint32_t kBatchSize = 64;
@@ -148,7 +150,7 @@ TEST(ReplayClient, GivesUpABlockWhenToldTo) {
 }
 
 TEST(ReplayClient, RefusesABatchOfAnotherSize) {
-  ScriptedServer server([](const ReplayRequest&) { return Batch{}; });
+  ScriptedServer server([](const ReplayRequest&) { return testing_support::encoded({}); });
   Connection connection(server);
   try {
     connection.replay.run_block({1, 2, 0.5}, key_as_priority);
@@ -159,7 +161,7 @@ TEST(ReplayClient, RefusesABatchOfAnotherSize) {
 }
 
 TEST(ReplayClient, RefusesAnAnswerToAnotherQuestion) {
-  ScriptedServer server([](const ReplayRequest&) { return Inserted{}; });
+  ScriptedServer server([](const ReplayRequest&) { return Body(encode(ReplayReply(Inserted{}))); });
   Connection connection(server);
   EXPECT_THROW(connection.replay.save("/nowhere", ""), Failure);
 }
