@@ -12,11 +12,12 @@ namespace corridor::actor {
 
 using driving::Command;
 
-Episode::Episode(const RunConfig& config, world::World& world)
+Episode::Episode(const RunConfig& config, world::World& world, driving::Skills skills)
     : settings_(driving_settings(config)),
       lanes_(settings_),
       step_limit_(config.simulation.episode_steps),
-      world_(world) {}
+      world_(world),
+      skills_(skills) {}
 
 void Episode::begin(const world::EpisodeStart& start) {
   situation_ = {};
@@ -33,7 +34,8 @@ void Episode::end() { world_.end(); }
 
 driving::Window Episode::window(Command command) const {
   const auto& ego = situation_.scene.ego;
-  return driving::window_for(driving::feasible(command, ego, settings_), ego, settings_);
+  return driving::window_for(driving::feasible(command, ego, settings_, skills_), ego, settings_,
+                             skills_);
 }
 
 StepOutcome Episode::step(Command command, int mop_action) {
@@ -41,8 +43,8 @@ StepOutcome Episode::step(Command command, int mop_action) {
   const driving::Window shown = window(command);
   const int corridor_before = lanes_.corridor_at(ego.d_m);
   const auto target = driving::target_for(driving::mop_action(mop_action), ego, settings_);
-  actions_.push_back(driving::pack(command, mop_action));
-  situation_.previous = driving::feasible(command, ego, settings_);
+  actions_.push_back(driving::pack(command, mop_action, static_cast<int>(skills_.size())));
+  situation_.previous = driving::feasible(command, ego, settings_, skills_);
 
   StepOutcome outcome = advance(world_.step(driving::Trajectory(reference_, target, settings_)));
   const bool seen_as_it_is = situation_.scene.ego == scene_.ego;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "actor/driving/planner.h"
+#include "actor/driving/skills.h"
 #include "actor/world/world.h"
 #include "proto/base/hash.h"
 #include "proto/settings/settings.h"
@@ -40,7 +41,8 @@ inline constexpr double kHardBrake_mps2 = 3.0;
 // One thread owns it; `world` outlives it.
 class Episode {
  public:
-  Episode(const RunConfig& config, world::World& world);
+  // `skills`: what can be asked for; outlives it.
+  Episode(const RunConfig& config, world::World& world, driving::Skills skills = driving::kSkills);
 
   void begin(const world::EpisodeStart& start);
   // Leaves the episode, so that the world's files are complete.
@@ -51,7 +53,8 @@ class Episode {
   const driving::Scene& scene() const { return scene_; }  // as it is
   const driving::Ego& reference() const { return reference_; }
 
-  // The corridors that the MoP is shown for a command (one that asks for a missing lane: kKeep).
+  driving::Skills skills() const { return skills_; }
+  // What the MoP is shown for a command; where it is not feasible, for the one in its place.
   driving::Window window(driving::Command command) const;
 
   StepOutcome step(driving::Command command, int mop_action);
@@ -73,6 +76,7 @@ class Episode {
   driving::Lanes lanes_;
   int step_limit_;
   world::World& world_;
+  driving::Skills skills_;
   driving::Situation situation_;
   driving::Scene scene_;
   driving::Ego reference_;  // where the next trajectory starts

@@ -31,11 +31,6 @@ void NStepBuilder::cut_off(std::span<const float> last_observation) {
 
 std::vector<float> NStepBuilder::take_rows() { return std::exchange(rows_, {}); }
 
-void NStepBuilder::clear() {
-  pending_.clear();
-  rows_.clear();
-}
-
 void NStepBuilder::emit(std::optional<std::span<const float>> next_observation) {
   double n_step_return = 0.0, discount = 1.0;
   double risk_return = 0.0, risk_discount = 1.0;

@@ -32,9 +32,6 @@ class NStepBuilder {
   // The rows completed since the last call, oldest first.
   std::vector<float> take_rows();
 
-  // Forgets steps and rows.
-  void clear();
-
  private:
   struct Step {
     std::vector<float> observation;

@@ -2,15 +2,19 @@
 
 #include <utility>
 
+#include "actor/driving/fixed_bp.h"
 #include "actor/driving/observation.h"
-#include "actor/driving/rules.h"
+#include "actor/driving/random_bp.h"
+#include "actor/driving/rules_bp.h"
+#include "actor/driving/rules_mop.h"
 #include "actor/driving/shield.h"
+#include "actor/driving/skills.h"
 
 namespace corridor::actor {
 
-QBehaviourPlanner::QBehaviourPlanner(const RunConfig& config, std::span<const float> parameters)
+QBehaviourPlanner::QBehaviourPlanner(const RunConfig& config, const Networks& networks)
     : settings_(driving_settings(config)),
-      values_(config.phase(Phase::kBp), config.shape(Phase::kBp), parameters),
+      values_(config.phase(Phase::kBp), config.shape(Phase::kBp), networks[NetworkId::kBp]),
       observation_(static_cast<std::size_t>(config.shape(Phase::kBp).observations)) {}
 
 driving::Command QBehaviourPlanner::decide(const driving::Situation& situation) {
@@ -22,10 +26,14 @@ std::span<const float> QBehaviourPlanner::values(const driving::Situation& situa
   return values_.values(observation_);
 }
 
-QMotionPlanner::QMotionPlanner(const RunConfig& config, std::span<const float> parameters)
+QMotionPlanner::QMotionPlanner(const RunConfig& config, const Networks& networks)
     : settings_(driving_settings(config)),
-      values_(config.phase(Phase::kMop), config.shape(Phase::kMop), parameters),
-      observation_(static_cast<std::size_t>(config.shape(Phase::kMop).observations)) {}
+      observation_(static_cast<std::size_t>(config.shape(NetworkId::kMop).observations)) {
+  for (const driving::Skill& skill : driving::kSkills) {
+    const NetworkId id = skill.network;
+    values_.try_emplace(id, config.phase(id), config.shape(id), networks[id]);
+  }
+}
 
 int QMotionPlanner::decide(const driving::Situation& situation, const driving::Window& window) {
   return policy::argmax(values(situation, window));
@@ -34,25 +42,25 @@ int QMotionPlanner::decide(const driving::Situation& situation, const driving::W
 std::span<const float> QMotionPlanner::values(const driving::Situation& situation,
                                               const driving::Window& window) {
   driving::observe_mop(situation.scene, situation.gaps, window, settings_, observation_);
-  return values_.values(observation_);
+  return values_.at(window.network).values(observation_);
 }
 
 std::unique_ptr<driving::BehaviourPlanner> make_behaviour_planner(const PlannerPair& pair,
                                                                   const RunConfig& config,
                                                                   const Networks& networks) {
-  using driving::Command, driving::ConstantBp;
+  using driving::Command, driving::FixedBp;
   const DrivingSettings settings = driving_settings(config);
   switch (pair.bp) {
     case BpKind::kLearned:
-      return std::make_unique<QBehaviourPlanner>(config, networks.bp);
+      return std::make_unique<QBehaviourPlanner>(config, networks);
     case BpKind::kRules:
       return std::make_unique<driving::RuleBasedBp>(settings);
     case BpKind::kAlwaysKeep:
-      return std::make_unique<ConstantBp>(Command::kKeep, settings);
+      return std::make_unique<FixedBp>(Command::kKeep, settings);
     case BpKind::kAlwaysLeft:
-      return std::make_unique<ConstantBp>(Command::kLeft, settings);
+      return std::make_unique<FixedBp>(Command::kLeft, settings);
     case BpKind::kAlwaysRight:
-      return std::make_unique<ConstantBp>(Command::kRight, settings);
+      return std::make_unique<FixedBp>(Command::kRight, settings);
     case BpKind::kRandom:
       return std::make_unique<driving::RandomBp>(settings);
     case BpKind::kNone:
@@ -68,7 +76,7 @@ std::unique_ptr<driving::MotionPlanner> make_motion_planner(const PlannerPair& p
   std::unique_ptr<driving::MotionPlanner> planner;
   switch (pair.mop) {
     case MopKind::kLearned:
-      planner = std::make_unique<QMotionPlanner>(config, networks.mop);
+      planner = std::make_unique<QMotionPlanner>(config, networks);
       break;
     case MopKind::kRules:
       planner = std::make_unique<driving::RuleBasedMop>(settings);

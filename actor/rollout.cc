@@ -16,7 +16,8 @@ PhaseRollout::PhaseRollout(const RunConfig& config, int actor, world::World& wor
       driving_(driving_settings(config)),
       schedule_(config),
       phase_(schedule_.phase_of(next_round)),
-      random_commands_(phase_ == Phase::kMop && config.schedule.mop_commands == "random"),
+      trains_bp_(phase_ == Phase::kBp),
+      random_commands_(!trains_bp_ && config.schedule.mop_commands == "random"),
       actor_(actor),
       next_round_(next_round),
       episode_(config, world),
@@ -27,7 +28,7 @@ PhaseRollout::PhaseRollout(const RunConfig& config, int actor, world::World& wor
       episode_index_(open.episode),
       observation_(static_cast<std::size_t>(config.shape(phase_).observations)),
       other_observation_(static_cast<std::size_t>(
-          config.shape(phase_ == Phase::kMop ? Phase::kBp : Phase::kMop).observations)),
+          config.shape(trains_bp_ ? NetworkId::kMop : NetworkId::kBp).observations)),
       time_(time) {
   const auto rounds_before = static_cast<std::int64_t>(next_round - schedule_.first_round(phase_));
   const auto recorded = static_cast<std::int64_t>(open.actions.size());
@@ -61,7 +62,7 @@ Insert PhaseRollout::drive_round(const Weights& weights) {
   chunk.observations = static_cast<std::uint32_t>(observation_.size());
   chunk.rows = transitions_.take_rows();
   time_.charge(TimePart::kPlan);
-  chunk.priorities = (phase_ == Phase::kMop ? *mop_ : *bp_).td_errors(chunk.rows);
+  chunk.priorities = network(phase_).td_errors(chunk.rows);
   time_.charge(TimePart::kInfer);
   chunk.open.episode = episode_index_;
   if (episode_open_) chunk.open.actions = episode_.actions();
@@ -69,15 +70,18 @@ Insert PhaseRollout::drive_round(const Weights& weights) {
 }
 
 void PhaseRollout::use(const Weights& weights) {
-  mop_.emplace(config_.phase(Phase::kMop), config_.shape(Phase::kMop), weights.mop);
-  bp_.emplace(config_.phase(Phase::kBp), config_.shape(Phase::kBp), weights.bp);
+  networks_.clear();
+  for (const NamedNetwork& network : kNetworks) {
+    networks_.emplace_back(config_.phase(network.id), config_.shape(network.id),
+                           weights.networks[network.id]);
+  }
 }
 
 SelectionOutcome PhaseRollout::select(const Weights& weights) {
   use(weights);
   if (episode_open_) cut_off_episode();
-  QMotionPlanner mop(config_, weights.mop);
-  QBehaviourPlanner learned_bp(config_, weights.bp);
+  QMotionPlanner mop(config_, weights.networks);
+  QBehaviourPlanner learned_bp(config_, weights.networks);
   driving::BehaviourPlanner& bp =
       random_commands_ ? static_cast<driving::BehaviourPlanner&>(random_bp_) : learned_bp;
   SelectionOutcome outcome;
@@ -89,7 +93,7 @@ SelectionOutcome PhaseRollout::select(const Weights& weights) {
     const EpisodeSummary& summary = episode_.summary();
     ++outcome.episodes;
     outcome.steps += static_cast<std::uint64_t>(summary.steps);
-    outcome.reward += phase_ == Phase::kMop ? summary.mop_reward : summary.bp_reward;
+    outcome.reward += trains_bp_ ? summary.bp_reward : summary.mop_reward;
     outcome.collisions += summary.collision.has_value();
   }
   episode_.end();
@@ -119,7 +123,7 @@ void PhaseRollout::step(std::int64_t own_step, std::optional<std::uint8_t> recor
   double shaping = 0.0;
   int chosen = action.mop_action;
   bool terminal = collided || outcome.entered_closed;
-  if (phase_ == Phase::kBp) {
+  if (trains_bp_) {
     reward = outcome.bp_reward;
     shaping = driving::bp_shaping(collided, outcome.lane_changed, config_.bp_reward);
     chosen = static_cast<int>(action.command);
@@ -133,7 +137,7 @@ void PhaseRollout::step(std::int64_t own_step, std::optional<std::uint8_t> recor
   if (!outcome.episode_ended) return;
   ++totals_.episodes;
   totals_.episodic_return +=
-      phase_ == Phase::kMop ? episode_.summary().mop_reward : episode_.summary().bp_reward;
+      trains_bp_ ? episode_.summary().bp_reward : episode_.summary().mop_reward;
   if (terminal) {
     leave_episode();
   } else {
@@ -146,9 +150,9 @@ Command PhaseRollout::command(const std::optional<std::uint8_t>& recorded) {
   if (!random_commands_) {
     if (recorded) return driving::unpack(*recorded).command;
     // Without weights yet: a recorded episode that has ended, which the constructor refuses.
-    if (!bp_) return Command::kKeep;
+    if (networks_.empty()) return Command::kKeep;
     driving::observe_bp(situation.scene, situation.previous, driving_, other_observation_);
-    return static_cast<Command>(greedy(*bp_, other_observation_));
+    return static_cast<Command>(greedy(NetworkId::kBp, other_observation_));
   }
   // Asked in either case: what the random BP does next depends on its having been asked.
   const Command asked = random_bp_.decide(situation);
@@ -166,43 +170,43 @@ driving::StepAction PhaseRollout::decide(std::optional<int> random_action,
   const driving::Situation& situation = episode_.situation();
   driving::StepAction action;
   if (recorded) action = driving::unpack(*recorded);
-  if (phase_ == Phase::kMop) {
+  if (!trains_bp_) {
     action.command = command(recorded);
     observe(action.command);
     if (!recorded) {
-      action.mop_action = random_action ? *random_action : greedy(*mop_, observation_);
+      action.mop_action = random_action ? *random_action : greedy(phase_, observation_);
     }
     return action;
   }
   observe(action.command);
   if (recorded) return action;
   action.command =
-      static_cast<Command>(random_action ? *random_action : greedy(*bp_, observation_));
-  driving::observe_mop(situation.scene, situation.gaps, episode_.window(action.command), driving_,
-                       other_observation_);
-  action.mop_action = greedy(*mop_, other_observation_);
+      static_cast<Command>(random_action ? *random_action : greedy(phase_, observation_));
+  const driving::Window window = episode_.window(action.command);
+  driving::observe_mop(situation.scene, situation.gaps, window, driving_, other_observation_);
+  action.mop_action = greedy(window.network, other_observation_);
   return action;
 }
 
-int PhaseRollout::greedy(policy::ActionValues& planner, const std::vector<float>& observation) {
+int PhaseRollout::greedy(NetworkId id, const std::vector<float>& observation) {
   time_.charge(TimePart::kPlan);
-  const int action = planner.greedy(observation);
+  const int action = network(id).greedy(observation);
   time_.charge(TimePart::kInfer);
   return action;
 }
 
 void PhaseRollout::observe(Command command) {
   const driving::Situation& situation = episode_.situation();
-  if (phase_ == Phase::kMop) {
+  if (trains_bp_) {
+    driving::observe_bp(situation.scene, situation.previous, driving_, observation_);
+  } else {
     driving::observe_mop(situation.scene, situation.gaps, episode_.window(command), driving_,
                          observation_);
-  } else {
-    driving::observe_bp(situation.scene, situation.previous, driving_, observation_);
   }
 }
 
 void PhaseRollout::cut_off_episode() {
-  observe(phase_ == Phase::kMop ? command(std::nullopt) : Command::kKeep);
+  observe(trains_bp_ ? Command::kKeep : command(std::nullopt));
   transitions_.cut_off(observation_);
   leave_episode();
 }

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "actor/driving/rules.h"
+#include "actor/driving/random_bp.h"
 #include "actor/episode.h"
 #include "actor/n_step.h"
 #include "actor/policy/action_values.h"
@@ -53,12 +53,13 @@ class PhaseRollout {
   // One step of training; with what was recorded for it instead of a greedy choice when it is
   // driven again. `own_step` counts this actor's steps in the phase.
   void step(std::int64_t own_step, std::optional<std::uint8_t> recorded);
-  // What the BP asks for while the MoP is trained.
+  // What the BP asks for while a network that drives skills is trained.
   driving::Command command(const std::optional<std::uint8_t>& recorded);
   driving::StepAction decide(std::optional<int> random_action,
                              const std::optional<std::uint8_t>& recorded);
-  int greedy(policy::ActionValues& planner, const std::vector<float>& observation);
-  // What the planner in training sees now, given the command where that is the MoP.
+  policy::ActionValues& network(NetworkId id) { return networks_[static_cast<std::size_t>(id)]; }
+  int greedy(NetworkId id, const std::vector<float>& observation);
+  // What the network in training sees now, given the command where it drives skills.
   void observe(driving::Command command);
   void use(const Weights& weights);
   void cut_off_episode();
@@ -68,7 +69,8 @@ class PhaseRollout {
   DrivingSettings driving_;
   Schedule schedule_;
   Phase phase_;
-  bool random_commands_;  // in the MoP phase
+  bool trains_bp_;        // otherwise a network that drives skills
+  bool random_commands_;  // then: the random BP asks for them
   int actor_;
   std::uint64_t next_round_;
 
@@ -79,10 +81,9 @@ class PhaseRollout {
   std::uint64_t episode_index_;
   bool episode_open_ = false;
 
-  std::optional<policy::ActionValues> mop_;
-  std::optional<policy::ActionValues> bp_;
-  std::vector<float> observation_;        // of the planner in training
-  std::vector<float> other_observation_;  // of the planner that is not
+  std::vector<policy::ActionValues> networks_;  // by id
+  std::vector<float> observation_;              // of the planner in training
+  std::vector<float> other_observation_;        // of the planner that is not
   RolloutTotals totals_;
   TimeAccount& time_;
 };

@@ -115,12 +115,13 @@ class Trainer {
   }
 
   void check_weights() const {
-    if (weights_.version != asked_ || weights_.mop.size() != config_.parameters(Phase::kMop) ||
-        weights_.bp.size() != config_.parameters(Phase::kBp)) {
+    for (const NamedNetwork& network : kNetworks) {
+      const std::size_t size = weights_.networks[network.id].size();
+      if (weights_.version == asked_ && size == config_.parameters(network.id)) continue;
       throw Failure(
-          "the learner sent weights of version {} with {} and {} parameters, which are "
-          "not those asked for: is it of another configuration?",
-          weights_.version, weights_.mop.size(), weights_.bp.size());
+          "the learner sent weights of version {} with a {} of {} parameters, which are not those "
+          "asked for: is it of another configuration?",
+          weights_.version, network.phase_name, size);
     }
   }
 

@@ -33,8 +33,9 @@ class Tracer {
   Tracer(const RunConfig& config, const PlannerPair& pair, const Networks* networks,
          world::World& world)
       : config_(config), settings_(driving_settings(config)), episode_(config, world) {
-    if (networks != nullptr && pair.bp == BpKind::kLearned) bp_.emplace(config, networks->bp);
-    if (networks != nullptr && pair.mop == MopKind::kLearned) mop_.emplace(config, networks->mop);
+    if (networks != nullptr && pair.bp == BpKind::kLearned) bp_.emplace(config, *networks);
+    if (networks != nullptr && pair.mop == MopKind::kLearned) mop_.emplace(config, *networks);
+    for (const driving::Skill& skill : episode_.skills()) trace_.commands.push_back(skill.name);
     trace_.step_s = config.simulation.step_s;
     trace_.lanes = config.road.lanes;
     trace_.lane_width_m = config.road.lane_width_m;

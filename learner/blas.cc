@@ -54,7 +54,7 @@ Blas blas_in_use() {
 std::string warning_about(const Blas& blas) {
   // Debian's reference BLAS is .../blas/libblas.so.3.x; a LibTorch with a BLAS inside exports none.
   if (blas.library.find("/blas/libblas.so") == std::string::npos) return {};
-  return "LibTorch uses the reference BLAS (" + blas.library +
+  return "the learner computes with the reference BLAS (" + blas.library +
          "), up to 20 times slower than OpenBLAS: apt-get install libopenblas0-serial";
 }
 

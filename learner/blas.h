@@ -1,5 +1,6 @@
-// Which matrix library LibTorch uses here. It decides the speed (Debian's default is up to 20 times
-// slower) and the bits of the result, so it is recorded beside each run.
+// Which BLAS this process computes with: the learner itself on the CPU, and Debian's LibTorch. It
+// decides the speed (Debian's default is up to 20 times slower) and the bits of the result, so it
+// is recorded beside each run.
 #pragma once
 
 #include <string>
@@ -18,7 +19,6 @@ struct Blas {
   std::string config;   // OpenBLAS's version and options, empty for others
 };
 
-// Of this process; call it after LibTorch is loaded.
 Blas blas_in_use();
 
 // What is wrong with it and what to do, in one line; empty when nothing is.

@@ -1,9 +1,6 @@
-#include <utility>
-
 #include "learner/adam.h"
 #include "learner/dense_passes.h"
 #include "learner/td_networks.h"
-#include "learner/torch_q_network.h"
 
 namespace corridor::learner {
 namespace {
@@ -13,58 +10,44 @@ class CpuNetworks : public TdNetworks {
   CpuNetworks(const NetworkShape& shape, const DqnSettings& dqn, const TdState& state)
       : shape_(shape),
         dqn_(dqn),
-        online_(shape, "cpu"),
-        target_(shape, "cpu"),
+        state_(state),
         gradient_(shape.parameters()),
-        mean_gradient_(state.mean_gradient),
-        mean_squared_gradient_(state.mean_squared_gradient),
-        steps_(state.updates),
         online_pass_(shape),
         online_next_pass_(shape),
-        target_next_pass_(shape) {
-    online_.set_parameters(state.online);
-    target_.set_parameters(state.target);
-  }
+        target_next_pass_(shape) {}
 
   BatchQValues forward(std::span<const float> rows, int batch) override {
     const auto stride = static_cast<int>(RowLayout{shape_.observations}.stride());
     const float* next = rows.data() + shape_.observations;
     BatchQValues q;
-    q.target_next = target_next_pass_.forward(target_.values(), next, stride, batch);
+    q.target_next = target_next_pass_.forward(state_.target, next, stride, batch);
     if (dqn_.double_q) {
-      q.online_next = online_next_pass_.forward(online_.values(), next, stride, batch);
+      q.online_next = online_next_pass_.forward(state_.online, next, stride, batch);
     }
-    q.online = online_pass_.forward(online_.values(), rows.data(), stride, batch);
+    q.online = online_pass_.forward(state_.online, rows.data(), stride, batch);
     return q;
   }
 
   double step(std::span<const float> q_gradient, double learning_rate) override {
-    online_pass_.backward(online_.values(), q_gradient, gradient_);
+    online_pass_.backward(state_.online, q_gradient, gradient_);
     const double size = norm(gradient_);
     const double scale = size > dqn_.gradient_norm_max ? dqn_.gradient_norm_max / size : 1.0;
-    adam_step(online_.values(), gradient_, {mean_gradient_, mean_squared_gradient_},
-              static_cast<float>(scale), learning_rate, dqn_.adam_epsilon, ++steps_);
+    adam_step(state_.online, gradient_, {state_.mean_gradient, state_.mean_squared_gradient},
+              static_cast<float>(scale), learning_rate, dqn_.adam_epsilon, ++state_.updates);
     return size;
   }
 
-  void copy_to_target() override { target_.set_parameters(online_.values()); }
+  void copy_to_target() override { state_.target = state_.online; }
 
-  std::vector<float> parameters() const override { return online_.parameters(); }
+  std::vector<float> parameters() const override { return state_.online; }
 
-  TdState state() const override {
-    return {online_.parameters(), target_.parameters(), mean_gradient_, mean_squared_gradient_,
-            steps_};
-  }
+  TdState state() const override { return state_; }
 
  private:
   NetworkShape shape_;
   DqnSettings dqn_;
-  QNetwork online_;
-  QNetwork target_;
+  TdState state_;
   std::vector<float> gradient_;
-  std::vector<float> mean_gradient_;
-  std::vector<float> mean_squared_gradient_;
-  std::uint64_t steps_;
   DensePasses online_pass_;
   DensePasses online_next_pass_;
   DensePasses target_next_pass_;

@@ -1,7 +1,7 @@
 // Forward and backward passes of a Q-network (proto/settings/transition.h: NetworkShape) on the
-// CPU, over flat parameters: matrix products by the BLAS that LibTorch uses, everything between
-// them in plain loops. For networks and batches this small LibTorch's operations cost more than
-// their arithmetic.
+// CPU, over flat parameters: matrix products by BLAS (Debian's LibTorch links the same one),
+// everything between them in plain loops. For networks and batches this small LibTorch's operations
+// cost more than their arithmetic.
 #pragma once
 
 #include <span>

@@ -1,4 +1,4 @@
-// The matrix product of the BLAS that LibTorch uses; link with it.
+// The matrix product of BLAS (learner/blas.h).
 #pragma once
 
 // In Fortran's calling convention, column-major.

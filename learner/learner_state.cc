@@ -63,9 +63,8 @@ Phase phase_in_progress(const Schedule& schedule, std::uint64_t next_round) {
 }
 
 Networks networks_to_use(const LearnerState& state, Phase phase) {
-  const Weights& newest = state.published.back();
-  Networks networks{newest.mop, newest.bp};
-  if (state.best) (phase == Phase::kMop ? networks.mop : networks.bp) = state.best->parameters;
+  Networks networks = state.published.back().networks;
+  if (state.best) networks[phase] = state.best->parameters;
   return networks;
 }
 
@@ -74,12 +73,13 @@ TensorFile to_tensors(const LearnerState& state, const RunConfig& config) {
   TensorFile tensors;
   tensors.metadata = {{"format", "corridor learner checkpoint"},
                       {"phase", phase_name(phase)},
-                      {"round", std::to_string(state.next_round)},
-                      {"mop.shape", shape_json(config.network(Phase::kMop))},
-                      {"bp.shape", shape_json(config.network(Phase::kBp))}};
+                      {"round", std::to_string(state.next_round)}};
   Networks networks = networks_to_use(state, phase);
-  tensors.put("mop", std::move(networks.mop));
-  tensors.put("bp", std::move(networks.bp));
+  for (const NamedNetwork& network : kNetworks) {
+    tensors.metadata[fmt::format("{}.shape", network.name)] =
+        shape_json(config.network(network.id));
+    tensors.put(network.name, std::move(networks[network.id]));
+  }
 
   put_number(tensors, "next_round", state.next_round);
   tensors.put("td.online", state.td.online);
@@ -89,8 +89,9 @@ TensorFile to_tensors(const LearnerState& state, const RunConfig& config) {
   put_number(tensors, "td.updates", state.td.updates);
   for (std::size_t i = 0; i < state.published.size(); ++i) {
     put_number(tensors, published_name(i, "version"), state.published[i].version);
-    tensors.put(published_name(i, "mop"), state.published[i].mop);
-    tensors.put(published_name(i, "bp"), state.published[i].bp);
+    for (const NamedNetwork& network : kNetworks) {
+      tensors.put(published_name(i, network.name), state.published[i].networks[network.id]);
+    }
   }
   if (state.best) {
     put_number(tensors, "best.version", state.best->version);
@@ -110,19 +111,18 @@ LearnerState from_tensors(const TensorFile& tensors, const RunConfig& config,
     throw Failure("{}: {} rounds done of {}; was config.toml changed?", file, state.next_round,
                   schedule.rounds());
   }
-  const std::size_t mop = config.parameters(Phase::kMop);
-  const std::size_t bp = config.parameters(Phase::kBp);
-  const std::size_t learning =
-      phase_in_progress(schedule, state.next_round) == Phase::kMop ? mop : bp;
-
+  const std::size_t learning = config.parameters(phase_in_progress(schedule, state.next_round));
   state.td = {reader.floats("td.online", learning), reader.floats("td.target", learning),
               reader.floats("td.mean_gradient", learning),
               reader.floats("td.mean_squared_gradient", learning),
               reader.number<std::uint64_t>("td.updates")};
   for (std::size_t i = 0; i < 2 && (i == 0 || reader.has(published_name(i, "version"))); ++i) {
-    state.published.push_back({reader.number<std::uint64_t>(published_name(i, "version")),
-                               reader.floats(published_name(i, "mop"), mop),
-                               reader.floats(published_name(i, "bp"), bp)});
+    Weights weights{reader.number<std::uint64_t>(published_name(i, "version")), {}};
+    for (const NamedNetwork& network : kNetworks) {
+      weights.networks[network.id] =
+          reader.floats(published_name(i, network.name), config.parameters(network.id));
+    }
+    state.published.push_back(std::move(weights));
   }
   if (state.published.back().version != state.next_round) {
     throw Failure("{}: weights {} published before round {}; the file is damaged", file,

@@ -25,7 +25,7 @@ struct Candidate {
   bool operator==(const Candidate&) const = default;
 };
 
-// Between two blocks. The phase in progress is next_round's, after the last round the BP's.
+// Between two blocks. The phase in progress is next_round's, after the last round the last one.
 struct LearnerState {
   std::uint64_t next_round = 0;    // blocks before it are done
   TdState td;                      // of the phase in progress
@@ -40,9 +40,9 @@ Phase phase_in_progress(const Schedule& schedule, std::uint64_t next_round);
 // newest.
 Networks networks_to_use(const LearnerState& state, Phase phase);
 
-// Tensors "mop" and "bp": networks_to_use; metadata "mop.shape" and "bp.shape": their NetworkShape
-// in JSON, "phase" and "round". The other tensors are the state's members. Equal states give equal
-// files.
+// Tensors "mop", "bp", by the networks' names: networks_to_use; metadata "mop.shape" ...: their
+// NetworkShape in JSON, "phase" and "round". The other tensors are the state's members. Equal
+// states give equal files.
 TensorFile to_tensors(const LearnerState& state, const RunConfig& config);
 // The inverse. Throws Failure naming `file` when something is missing or has another size than the
 // configuration's networks.

@@ -1,6 +1,5 @@
 #include "learner/publisher.h"
 
-#include <cmath>
 #include <utility>
 
 #include "proto/base/failure.h"
@@ -79,11 +78,6 @@ void Publisher::answer(const IncomingRequest& request, const SelectionOutcome& o
   if (outcome.round > newest + 1) {
     server_.refuse(request, fmt::format("an outcome of round {} before weights {} exist",
                                         outcome.round, outcome.round - 1));
-    return;
-  }
-  if (!std::isfinite(outcome.reward)) {
-    server_.refuse(request,
-                   fmt::format("a reward of {} in round {}", outcome.reward, outcome.round));
     return;
   }
   // A restarted actor may report an old round again, or the same outcome a second time.

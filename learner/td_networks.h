@@ -1,6 +1,7 @@
 // The online and the target network of a training step, and what the step does to them. Two ways to
-// compute it: on the CPU by hand (cpu_networks.cc), and by LibTorch's autograd and optimiser on any
-// device (torch_networks.cc), which is also what the first is tested against.
+// compute it: on the CPU by BLAS and our own loops, forward, backward and Adam, without LibTorch
+// (cpu_networks.cc); by LibTorch's autograd and Adam (torch_networks.cc), which trains on CUDA and
+// is what the first is tested against on the CPU.
 #pragma once
 
 #include <cstdint>
@@ -44,7 +45,7 @@ class TdNetworks {
   virtual TdState state() const = 0;                  // updates: steps so far
 };
 
-// `state`'s vectors have the shape's size. Both throw Failure as check_device does.
+// `state`'s vectors have the shape's size. torch_networks throws Failure as check_device does.
 std::unique_ptr<TdNetworks> cpu_networks(const NetworkShape& shape, const DqnSettings& dqn,
                                          const TdState& state);
 std::unique_ptr<TdNetworks> torch_networks(const NetworkShape& shape, const DqnSettings& dqn,

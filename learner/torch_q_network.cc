@@ -8,6 +8,7 @@
 #include "proto/base/random.h"
 
 namespace corridor::learner {
+
 void check_device(const std::string& device) {
   if (device == "cpu") return;
   if (device != "cuda") throw Failure("run.device is '{}'; it must be 'cpu' or 'cuda'", device);
@@ -101,11 +102,6 @@ at::Tensor QNetwork::forward(const at::Tensor& observations) const {
   if (!impl_->shape.dueling) return last;
   const torch::Tensor value = impl_->apply(layers[hidden_layers], hidden);  // [batch, 1]
   return last + (value - last.mean(1, /*keepdim=*/true));
-}
-
-std::span<float> QNetwork::values() {
-  CORRIDOR_CHECK(impl_->device.is_cpu(), "parameters on {}", impl_->device.str());
-  return {impl_->parameters.data_ptr<float>(), impl_->shape.parameters()};
 }
 
 at::Tensor& QNetwork::parameter_tensor() { return impl_->parameters; }

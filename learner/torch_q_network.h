@@ -1,6 +1,6 @@
 // A Q-network in LibTorch: a multi-layer perceptron whose parameters are one flat tensor, so that
-// copies, checkpoints and Adam touch one array. q_network.cc and torch_networks.cc are the only
-// users of LibTorch.
+// copies, checkpoints and Adam touch one array. Trained only on CUDA (torch_networks.cc); on the
+// CPU cpu_networks.cc trains without LibTorch, which is what tests hold it against.
 #pragma once
 
 #include <cstdint>
@@ -45,9 +45,6 @@ class QNetwork {
 
   // [batch, actions], row-major, for observations [batch, observations].
   std::vector<float> forward(std::span<const float> observations, int batch) const;
-
-  // The parameters where they lie, in NetworkShape's order. On the CPU only (CHECK).
-  std::span<float> values();
 
   // For torch_networks.cc: [batch, actions] for observations [batch, observations] on the network's
   // device, differentiable in parameter_tensor().

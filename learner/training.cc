@@ -44,15 +44,16 @@ std::vector<float> running_average(std::vector<float> average, const std::vector
 }
 
 LearnerState initial_state(const RunConfig& config, const std::optional<Networks>& given) {
-  const auto initial = [&](Phase phase) {
-    return initial_parameters(config.network(phase), config.run.seed, phase,
-                              config.phase(phase).networks());
-  };
-  Weights first{0, given ? given->mop : initial(Phase::kMop),
-                given ? given->bp : initial(Phase::kBp)};
+  Networks networks;
+  for (const NamedNetwork& network : kNetworks) {
+    const NetworkId id = network.id;
+    networks[id] = given ? (*given)[id]
+                         : initial_parameters(config.network(id), config.run.seed, id,
+                                              config.phase(id).networks());
+  }
   LearnerState state;
-  state.td = initial_td_state(first.mop);
-  state.published.push_back(std::move(first));
+  state.td = initial_td_state(networks[kNetworks.front().id]);
+  state.published.push_back({0, std::move(networks)});
   return state;
 }
 
@@ -155,7 +156,7 @@ void Training::consider(const SelectionOutcome& outcome) {
   const auto found = std::find_if(state_.published.begin(), state_.published.end(),
                                   [&](const Weights& w) { return w.version == version; });
   CORRIDOR_CHECK(found != state_.published.end(), "version {} in round {}", version, outcome.round);
-  state_.best = Candidate{version, score_, phase_ == Phase::kMop ? found->mop : found->bp};
+  state_.best = Candidate{version, score_, found->networks[phase_]};
 }
 
 std::optional<Opened> Training::await_block(std::uint64_t round) {
@@ -199,7 +200,7 @@ void Training::finish_block(std::uint64_t round, std::uint32_t updates) {
       round + 1 == schedule_.first_round(phase_) + schedule_.rounds_of(phase_);
   Weights next = state_.published.back();
   next.version = round + 1;
-  std::vector<float>& learned = phase_ == Phase::kMop ? next.mop : next.bp;
+  std::vector<float>& learned = next.networks[phase_];
   // What was published last is the average so far; a window never reaches back before the phase.
   const auto window_updates = static_cast<std::uint64_t>(dqn().averaging_updates);
   learned = last_of_phase && state_.best
@@ -210,11 +211,12 @@ void Training::finish_block(std::uint64_t round, std::uint32_t updates) {
   if (state_.published.size() > 2) state_.published.erase(state_.published.begin());
   state_.next_round = round + 1;
 
-  if (last_of_phase && phase_ == Phase::kMop) {
-    log_info("the MoP is done and frozen; the BP's phase begins");
-    phase_ = Phase::kBp;
+  if (const Phase now = phase_in_progress(schedule_, state_.next_round); now != phase_) {
+    log_info("the {} is done and frozen; the {}'s phase begins", phase_name(phase_),
+             phase_name(now));
+    phase_ = now;
     state_.best.reset();
-    begin_phase(initial_td_state(next.bp));
+    begin_phase(initial_td_state(next.networks[phase_]));
   }
   around_.publisher.publish(std::move(next));
   around_.time.charge(TimePart::kPublish);

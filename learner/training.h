@@ -1,4 +1,4 @@
-// The learner's work: block after block, batches in, weights out; the MoP's phase, then the BP's.
+// The learner's work: block after block, batches in, weights out; phase after phase.
 // docs/architecture.md, "Lockstep", says why the result does not depend on timing.
 #pragma once
 

@@ -1,12 +1,11 @@
 #include "replay/replay_service.h"
 
 #include "proto/base/failure.h"
+#include "proto/settings/limits.h"
 #include "proto/wire/codec.h"
 
 namespace corridor::replay {
 namespace {
-
-constexpr std::size_t kBatchBytesMax = 64 * 1024 * 1024;  // what proto/wire/codec.h carries
 
 template <typename... Args>
 Refused refused(fmt::format_string<Args...> format, Args&&... args) {
@@ -15,14 +14,8 @@ Refused refused(fmt::format_string<Args...> format, Args&&... args) {
 
 }  // namespace
 
-ReplayService::Layouts ReplayService::layouts_of(const RunConfig& config) {
-  return {RowLayout{config.shape(Phase::kMop).observations},
-          RowLayout{config.shape(Phase::kBp).observations}};
-}
-
-ReplayService::ReplayService(const RunConfig& config, const Layouts& layouts)
+ReplayService::ReplayService(const RunConfig& config)
     : config_(config),
-      layouts_(layouts),
       schedule_(config),
       admission_(static_cast<std::size_t>(config.run.actors)),
       store_(config.phase(phase_), layout(phase_), config.run.seed, phase_, 0),
@@ -49,11 +42,11 @@ Outcome ReplayService::handle(ClientId client, ReplayRequest request) {
 
 Outcome ReplayService::answer(ClientId client, const Join&) {
   if (client.role == Role::kLearner) return Joined{next_round(), {}};
-  Joined joined{admission_.next_round(client.index), {}};
+  const std::uint64_t next = admission_.next_round(client.index);
   // An actor's episodes are counted in a phase: none is carried over into the next one.
-  const std::uint64_t bp = schedule_.first_round(Phase::kBp);
-  if (joined.next_round != bp) joined.open = admission_.open_episode(client.index);
-  return joined;
+  const bool begins_phase =
+      next < schedule_.rounds() && next == schedule_.first_round(schedule_.phase_of(next));
+  return Joined{next, begins_phase ? OpenEpisode{} : admission_.open_episode(client.index)};
 }
 
 Outcome ReplayService::answer(ClientId client, Insert&& chunk) {
@@ -126,7 +119,7 @@ Outcome ReplayService::answer(ClientId, const Step& request) {
   if (request.count > 0 && store_.size() == 0) {
     return refused("{} rows wanted, none held", request.count);
   }
-  if (request.count * store_.layout().stride() * sizeof(float) > kBatchBytesMax) {
+  if (request.count * store_.layout().stride() * sizeof(float) > kDataBytesMax) {
     return refused("{} rows wanted, more than a message holds", request.count);
   }
   store_.update(request.keys, request.priorities);
@@ -189,7 +182,7 @@ void ReplayService::load_head(const TensorFile& head, const std::string& name) {
     throw Failure("{}: {} rounds in a run of {}; use the run's own checkpoint", name, next_round(),
                   schedule_.rounds());
   }
-  begin(next_round() == 0 ? Phase::kMop : schedule_.phase_of(next_round() - 1), 0);
+  begin(schedule_.phase_of(next_round() == 0 ? 0 : next_round() - 1), 0);
   store_.load(head, name);
   waits_ = false;
   open_ = false;

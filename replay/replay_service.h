@@ -7,7 +7,6 @@
 // impossible is refused before it changes anything. One thread.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -43,12 +42,8 @@ using Outcome = std::variant<ReplayReply, EncodedBatch, Refused, Waiting>;
 
 class ReplayService {
  public:
-  using Layouts = std::array<RowLayout, 2>;  // of the phases' rows
-
   // At the start of a run.
-  explicit ReplayService(const RunConfig& config) : ReplayService(config, layouts_of(config)) {}
-  // With rows of other widths than the configuration's planners have.
-  ReplayService(const RunConfig& config, const Layouts& layouts);
+  explicit ReplayService(const RunConfig& config);
 
   // One request of `client`. Requests of one client come in the order in which it sent them.
   Outcome handle(ClientId client, ReplayRequest request);
@@ -81,13 +76,11 @@ class ReplayService {
   Outcome answer(ClientId client, const Step& request);
   Outcome answer(ClientId client, const Save& request);
 
-  static Layouts layouts_of(const RunConfig& config);
-  RowLayout layout(Phase phase) const { return layouts_[static_cast<std::size_t>(phase)]; }
+  RowLayout layout(Phase phase) const { return {config_.shape(phase).observations}; }
   // An empty store and the limiter of the phase.
   void begin(Phase phase, std::uint64_t first_key);
 
   RunConfig config_;
-  Layouts layouts_;
   Schedule schedule_;
   Admission admission_;
   Phase phase_ = Phase::kMop;  // of the store

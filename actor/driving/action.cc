@@ -47,14 +47,14 @@ Target target_for(const MopAction& action, const Ego& ego, const DrivingSettings
           std::clamp(set_point_mps, 0.0, settings.road.speed_limit_mps)};
 }
 
-std::uint8_t pack(Command command, int mop_action_index) {
-  const int packed = kBpCommands * mop_action_index + static_cast<int>(command);
+std::uint8_t pack(Command command, int mop_action_index, int skills) {
+  const int packed = skills * mop_action_index + static_cast<int>(command);
   CORRIDOR_CHECK(mop_action_index >= 0 && packed <= 255, "action {}", mop_action_index);
   return static_cast<std::uint8_t>(packed);
 }
 
-StepAction unpack(std::uint8_t packed) {
-  return {static_cast<Command>(packed % kBpCommands), packed / kBpCommands};
+StepAction unpack(std::uint8_t packed, int skills) {
+  return {static_cast<Command>(packed % skills), packed / skills};
 }
 
 }  // namespace corridor::driving

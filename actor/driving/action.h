@@ -6,6 +6,7 @@
 
 #include "actor/driving/corridors.h"
 #include "actor/driving/scene.h"
+#include "proto/settings/transition.h"
 
 namespace corridor::driving {
 
@@ -33,13 +34,13 @@ struct Target {
 Target target_for(const MopAction& action, const Ego& ego, const DrivingSettings& settings);
 
 // What one step of an episode was driven with, in one byte: the action list that, with the
-// episode's seed, drives an episode again. 3 * (MoP action) + command; at most 255, which the
-// configuration's check guarantees.
-std::uint8_t pack(Command command, int mop_action_index);
+// episode's seed, drives an episode again. (MoP action) * `skills` + command; at most 255, which
+// the configuration's check guarantees.
+std::uint8_t pack(Command command, int mop_action_index, int skills = kSkillCount);
 struct StepAction {
   Command command = Command::kKeep;
   int mop_action = 0;
 };
-StepAction unpack(std::uint8_t packed);
+StepAction unpack(std::uint8_t packed, int skills = kSkillCount);
 
 }  // namespace corridor::driving

@@ -59,9 +59,9 @@ void observe_mop(const Scene& scene, const std::vector<CorridorGaps>& gaps, cons
 }
 
 void observe_bp(const Scene& scene, Command previous, const DrivingSettings& settings,
-                std::span<float> out) {
+                std::span<float> out, int skills) {
   const Lanes lanes(settings);
-  const auto size = static_cast<std::size_t>(bp_shape(lanes.lanes()).observations);
+  const auto size = static_cast<std::size_t>(bp_shape(lanes.lanes(), skills).observations);
   CORRIDOR_CHECK(out.size() == size, "{} floats for {} observations", out.size(), size);
 
   const Ego& ego = scene.ego;
@@ -77,7 +77,7 @@ void observe_bp(const Scene& scene, Command previous, const DrivingSettings& set
   for (int which = 0; which < 3; ++which) {
     const int lane = own_lane + which - 1;
     if (lane < 0 || lane >= lanes.lanes()) continue;
-    float* entry = &at(BpIndex::lane(lanes.lanes(), which));
+    float* entry = &at(BpIndex::lane(lanes.lanes(), which, skills));
     entry[BpIndex::kExists] = 1.0f;
     put_gaps(lane_gaps(scene, lane, settings), entry + BpIndex::kFrontGap);
   }

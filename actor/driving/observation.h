@@ -45,10 +45,9 @@ void observe_mop(const Scene& scene, const std::vector<CorridorGaps>& gaps, cons
 //   1                  speed set-point
 //   2                  ego's offset from its lane's centre / half a lane width, left > 0
 //   3 .. 3+L-1         ego lane, one-hot
-//   then 3             previous command, one-hot: keep, left, right
+//   then K             previous command of K skills, one-hot
 //   then 3 x 5         lanes right, own, left: exists (1 or 0), front gap, front rate, back gap,
 //                      back rate (all 0 where it does not exist)
-
 struct BpIndex {
   static constexpr int kSpeed = 0;
   static constexpr int kSetPoint = 1;
@@ -56,8 +55,8 @@ struct BpIndex {
   static constexpr int kLane = 3;
   static constexpr int previous_command(int lanes) { return kBpScalars + lanes; }
   // which: 0 right, 1 own, 2 left
-  static constexpr int lane(int lanes, int which) {
-    return kBpScalars + lanes + kBpCommands + kBpPerLane * which;
+  static constexpr int lane(int lanes, int which, int skills = kSkillCount) {
+    return kBpScalars + lanes + skills + kBpPerLane * which;
   }
 
   static constexpr int kExists = 0;
@@ -67,8 +66,8 @@ struct BpIndex {
   static constexpr int kBackRate = 4;
 };
 
-// `out` has bp_shape().observations floats.
+// `out` has bp_shape().observations floats; `skills` as there.
 void observe_bp(const Scene& scene, Command previous, const DrivingSettings& settings,
-                std::span<float> out);
+                std::span<float> out, int skills = kSkillCount);
 
 }  // namespace corridor::driving

@@ -46,7 +46,8 @@ inline const Vehicle* find_vehicle(const Scene& scene, int id) {
   return found != scene.others.end() && found->id == id ? &*found : nullptr;
 }
 
-// What the behaviour planner asks for (paper section III-B); the values are its actions.
-enum class Command { kKeep = 0, kLeft = 1, kRight = 2 };
+// What the behaviour planner asks for (paper section III-B): its action, which is a place in a
+// table of skills (actor/driving/skills.h). Named are those of the paper.
+enum class Command : int { kKeep = 0, kLeft = 1, kRight = 2 };
 
 }  // namespace corridor::driving

@@ -6,12 +6,12 @@
 
 #include "proto/base/failure.h"
 #include "proto/config/toml_text.h"
+#include "proto/settings/limits.h"
 
 namespace corridor {
 namespace {
 
-// What fits one field of a message (proto/wire/wire.capnp).
-constexpr std::size_t kParametersMax = 16 * 1024 * 1024;
+constexpr std::size_t kParametersMax = kDataBytesMax / sizeof(float);
 
 // Left free at the road's ends, beyond the traffic's window.
 constexpr double kRoadEnds_m = 200.0;
@@ -150,7 +150,7 @@ void check_planners(const RunConfig& config) {
 
 void check_dqn(const RunConfig& config, Phase phase) {
   const DqnSettings& dqn = config.phase(phase);
-  const std::string table = phase == Phase::kMop ? "mop" : "bp";
+  const char* const table = named_network(phase).name;
   require(dqn.capacity >= dqn.minimum_size && dqn.minimum_size >= dqn.batch_size,
           "{0}.capacity = {1}, {0}.minimum_size = {2}, {0}.batch_size = {3} must not ascend", table,
           dqn.capacity, dqn.minimum_size, dqn.batch_size);
@@ -183,8 +183,7 @@ void check_config(const RunConfig& config, const std::string& name) {
     check_training_traffic(config.traffic, config.training_traffic);
     check_planners(config);
     check_objects(config);
-    check_dqn(config, Phase::kMop);
-    check_dqn(config, Phase::kBp);
+    for (const NamedNetwork& network : kNetworks) check_dqn(config, network.id);
     check_run(config);
   } catch (const Failure& failure) {
     throw Failure("{}: {}", name, failure.what());

@@ -58,10 +58,13 @@ TracedDecision parse_decision(const Json& object) {
   return decision;
 }
 
-TracedStep parse_step(const Json& object) {
+TracedStep parse_step(const Json& object, std::size_t commands) {
   TracedStep step;
   step.ego = parse_vehicle(object.at("ego"));
-  if (object.contains("command")) step.command = whole_number<int>(object.at("command"));
+  if (object.contains("command")) {
+    step.command = whole_number<int>(object.at("command"));
+    if (static_cast<std::size_t>(*step.command) >= commands) throw Failure("an unknown command");
+  }
   step.others = parse_vehicles(object.at("others"));
   if (object.contains("decision")) step.decision = parse_decision(object.at("decision"));
   for (const Json& scene : object.at("on_the_way")) {
@@ -86,7 +89,8 @@ Json to_json(const EpisodeTrace& trace) {
     if (step.decision) object["decision"] = to_json(*step.decision);
     steps.push_back(std::move(object));
   }
-  Json object = {{"step_s", trace.step_s},
+  Json object = {{"commands", trace.commands},
+                 {"step_s", trace.step_s},
                  {"lanes", trace.lanes},
                  {"lane_width_m", trace.lane_width_m},
                  {"speed_limit_mps", trace.speed_limit_mps},
@@ -102,13 +106,16 @@ Json to_json(const EpisodeTrace& trace) {
 EpisodeTrace parse_episode_trace(const Json& object, const std::string& name) {
   try {
     EpisodeTrace trace;
+    object.at("commands").get_to(trace.commands);
     trace.step_s = object.at("step_s").get<double>();
     trace.lanes = whole_number<int>(object.at("lanes"));
     trace.lane_width_m = object.at("lane_width_m").get<double>();
     trace.speed_limit_mps = object.at("speed_limit_mps").get<double>();
     trace.bp_reward = object.at("bp_reward").get<double>();
     trace.lane_changes = whole_number<int>(object.at("lane_changes"));
-    for (const Json& step : object.at("steps")) trace.steps.push_back(parse_step(step));
+    for (const Json& step : object.at("steps")) {
+      trace.steps.push_back(parse_step(step, trace.commands.size()));
+    }
     if (trace.steps.empty()) throw Failure("no step");
     if (object.contains("collision")) {
       const Json& collision = object.at("collision");

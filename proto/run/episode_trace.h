@@ -32,7 +32,7 @@ struct TracedDecision {
   int corridor = 0;  // chosen; the road's count from the right, 0 first
   double set_point_mps = 0.0;
   int mop_action = 0;
-  std::vector<double> bp_values;   // of the three commands; empty where no network decides
+  std::vector<double> bp_values;   // of each command; empty where no network decides
   std::vector<double> mop_values;  // of each MoP action; likewise
   int window_first = 0;            // the corridors that the MoP was shown, and which were open
   std::vector<bool> window_open;
@@ -43,8 +43,8 @@ struct TracedDecision {
 
 struct TracedStep {
   TracedVehicle ego;                  // id 0
-  std::optional<int> command;         // that was asked for then; none when it was the last, or when
-                                      // no planner drove
+  std::optional<int> command;         // that was asked for then, of EpisodeTrace::commands; none
+                                      // when it was the last, or when no planner drove
   std::vector<TracedVehicle> others;  // ascending by id
   std::optional<TracedDecision> decision = {};  // as `command`
   std::vector<TracedScene> on_the_way = {};     // to the next step, at equal intervals; may be none
@@ -56,6 +56,7 @@ struct TracedCollision {
 };
 
 struct EpisodeTrace {
+  std::vector<std::string> commands;  // names of those that a planner can ask for
   double step_s = 0.0;
   int lanes = 0;
   double lane_width_m = 0.0;

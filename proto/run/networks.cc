@@ -12,15 +12,17 @@ namespace {
 constexpr const char* kCheckpointFile = "learner.safetensors";
 
 Networks networks_in(const TensorFile& tensors, const RunConfig& config, const std::string& file) {
-  Networks networks{tensors.get<float>("mop", file), tensors.get<float>("bp", file)};
-  const auto check = [&](const std::vector<float>& parameters, Phase phase) {
-    const std::size_t expected = config.parameters(phase);
-    if (parameters.size() == expected) return;
-    throw Failure("{}: the {} has {} parameters, the settings ask for {}: they are of another one",
-                  file, phase_name(phase), parameters.size(), expected);
-  };
-  check(networks.mop, Phase::kMop);
-  check(networks.bp, Phase::kBp);
+  Networks networks;
+  for (const NamedNetwork& network : kNetworks) {
+    const auto& parameters = tensors.get<float>(network.name, file);
+    const std::size_t expected = config.parameters(network.id);
+    if (parameters.size() != expected) {
+      throw Failure(
+          "{}: the {} has {} parameters, the settings ask for {}: they are of another one", file,
+          network.phase_name, parameters.size(), expected);
+    }
+    networks[network.id] = parameters;
+  }
   return networks;
 }
 
@@ -35,8 +37,7 @@ std::optional<Networks> given_networks(const RunDirectory& directory, const RunC
 void write_networks(const RunDirectory& directory, const Networks& networks) {
   TensorFile tensors;
   tensors.metadata = {{"format", "corridor networks"}};
-  tensors.put("mop", networks.mop);
-  tensors.put("bp", networks.bp);
+  for (const NamedNetwork& network : kNetworks) tensors.put(network.name, networks[network.id]);
   write_tensors(directory.networks(), tensors);
 }
 

@@ -1,24 +1,17 @@
-// The two networks of a run, as they drive.
+// The networks of a run, as they drive: their files.
 #pragma once
 
 #include <optional>
-#include <vector>
 
 #include "proto/run/run_directory.h"
+#include "proto/settings/named_networks.h"
 #include "proto/settings/settings.h"
 
 namespace corridor {
 
-// Both planners' parameters (RunConfig::parameters).
-struct Networks {
-  std::vector<float> mop;
-  std::vector<float> bp;
-  bool operator==(const Networks&) const = default;
-};
-
-// networks.safetensors: those that a training began with, or that a run without checkpoints drives
-// with; nothing when there is no such file. Throws Failure naming the file when it is damaged or
-// its networks are not of the size that `config` asks for.
+// networks.safetensors, a tensor a network by its name: those that a training began with, or that a
+// run without checkpoints drives with; nothing when there is no such file. Throws Failure naming
+// the file when it is damaged or its networks are not of the size that `config` asks for.
 std::optional<Networks> given_networks(const RunDirectory& directory, const RunConfig& config);
 void write_networks(const RunDirectory& directory, const Networks& networks);
 

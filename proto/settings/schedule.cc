@@ -17,24 +17,27 @@ std::uint64_t rounds_for(std::int64_t steps, std::int64_t steps_per_round) {
 Schedule::Schedule(const RunConfig& config)
     : steps_per_round_(static_cast<std::int64_t>(config.schedule.steps_per_round) *
                        config.run.actors),
-      phase_rounds_{rounds_for(config.phase(Phase::kMop).steps, steps_per_round_),
-                    rounds_for(config.phase(Phase::kBp).steps, steps_per_round_)},
       selection_every_(rounds_for(config.schedule.selection_every_steps, steps_per_round_)),
-      checkpoint_every_(rounds_for(config.schedule.checkpoint_every_steps, steps_per_round_)) {}
+      checkpoint_every_(rounds_for(config.schedule.checkpoint_every_steps, steps_per_round_)) {
+  for (std::size_t i = 0; i < config.dqn.size(); ++i) {
+    starts_[i + 1] = starts_[i] + rounds_for(config.dqn[i].steps, steps_per_round_);
+  }
+}
 
-std::uint64_t Schedule::rounds() const { return phase_rounds_[0] + phase_rounds_[1]; }
+std::uint64_t Schedule::rounds() const { return starts_.back(); }
 
 std::uint64_t Schedule::first_round(Phase phase) const {
-  return phase == Phase::kMop ? 0 : phase_rounds_[0];
+  return starts_[static_cast<std::size_t>(phase)];
 }
 
 std::uint64_t Schedule::rounds_of(Phase phase) const {
-  return phase_rounds_[static_cast<std::size_t>(phase)];
+  return starts_[static_cast<std::size_t>(phase) + 1] - first_round(phase);
 }
 
 Phase Schedule::phase_of(std::uint64_t round) const {
   CORRIDOR_CHECK(round < rounds(), "round {} of {}", round, rounds());
-  return round < phase_rounds_[0] ? Phase::kMop : Phase::kBp;
+  // No phase is without rounds.
+  return static_cast<Phase>(std::ranges::upper_bound(starts_, round) - starts_.begin() - 1);
 }
 
 std::int64_t Schedule::steps_per_round() const { return steps_per_round_; }

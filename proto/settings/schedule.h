@@ -3,9 +3,11 @@
 //
 // Round r: each actor drives steps_per_round steps with weights version `weights_version(r)`;
 // block r: the learner trains on rounds up to r and publishes version r + 1. Round r and block
-// r - 1 go on at the same time. A phase's rounds are consecutive; the BP's follow the MoP's.
+// r - 1 go on at the same time. A phase's rounds are consecutive; phases follow one another in the
+// order of kNetworks.
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 #include "proto/settings/settings.h"
@@ -16,7 +18,7 @@ class Schedule {
  public:
   explicit Schedule(const RunConfig& config);
 
-  std::uint64_t rounds() const;  // of both phases
+  std::uint64_t rounds() const;  // of all phases
   std::uint64_t first_round(Phase phase) const;
   std::uint64_t rounds_of(Phase phase) const;  // the budget divided, rounded up
   Phase phase_of(std::uint64_t round) const;   // round < rounds()
@@ -27,8 +29,8 @@ class Schedule {
   // Share of the phase's rounds that lie before `round`, in [0, 1).
   double phase_progress(std::uint64_t round) const;
 
-  // The weights that round r is driven with: max(first round of its phase, r - 1). Version 0 and
-  // the BP phase's first version are published before any of the phase's blocks is trained.
+  // The weights that round r is driven with: max(first round of its phase, r - 1). A phase's first
+  // version is published before any of the phase's blocks is trained.
   std::uint64_t weights_version(std::uint64_t round) const;
 
   // Whether the actors evaluate weights_version(round) greedily before they drive this round: every
@@ -40,9 +42,9 @@ class Schedule {
 
  private:
   std::int64_t steps_per_round_;
-  std::uint64_t phase_rounds_[kPhases];
-  std::uint64_t selection_every_;   // rounds
-  std::uint64_t checkpoint_every_;  // rounds
+  std::array<std::uint64_t, kNetworks.size() + 1> starts_{};  // of the phases; then rounds()
+  std::uint64_t selection_every_;                             // rounds
+  std::uint64_t checkpoint_every_;                            // rounds
 };
 
 }  // namespace corridor

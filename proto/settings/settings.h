@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "proto/settings/named_networks.h"
 #include "proto/settings/transition.h"
 
 namespace corridor {
@@ -129,7 +130,7 @@ struct BpRewardSettings {
   double lane_change_shaping = -5.0;  // on a lane change, to either side
 };
 
-// [rules] The rule-based planners (actor/driving/rules.h).
+// [rules] The rule-based planners (actor/driving/rules_bp.h, rules_mop.h).
 struct RulesSettings {
   double slow_leader_mps = 2.0;  // leave a lane whose leader is this much below the target
   double leader_range_m = 80.0;  // leaders further away do not matter
@@ -254,21 +255,16 @@ struct RunConfig {
   BpRewardSettings bp_reward;
   RulesSettings rules;
   RandomBpSettings random_bp;
-  std::array<DqnSettings, kPhases> dqn = {DqnSettings{}, bp_defaults()};  // [mop], [bp]
+  std::array<DqnSettings, kNetworks.size()> dqn = {DqnSettings{}, bp_defaults()};  // [mop], [bp]
   ScheduleSettings schedule;
   EvaluationSettings evaluation;
   RunSettings run;
 
   const DqnSettings& phase(Phase which) const { return dqn[static_cast<std::size_t>(which)]; }
-  PlannerShape shape(Phase which) const {
-    return which == Phase::kMop ? mop_shape(planner.corridors_per_lane,
-                                            static_cast<int>(planner.speed_changes_mps.size()),
-                                            planner.clearance_steps)
-                                : bp_shape(road.lanes);
-  }
-  NetworkShape network(Phase which) const { return phase(which).network(shape(which)); }
-  // A planner's parameters: its networks' one after the other, the reward's first.
-  std::size_t parameters(Phase which) const {
+  PlannerShape shape(NetworkId which) const { return named_network(which).shape(*this); }
+  NetworkShape network(NetworkId which) const { return phase(which).network(shape(which)); }
+  // Of the reward and, where there is one, of the risk, one after the other.
+  std::size_t parameters(NetworkId which) const {
     return static_cast<std::size_t>(phase(which).networks()) * network(which).parameters();
   }
 };

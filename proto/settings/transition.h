@@ -1,18 +1,12 @@
-// What actor, replay and learner must agree on about the numbers themselves: the sizes of the two
+// What actor, replay and learner must agree on about the numbers themselves: the sizes of the
 // planners' observations and actions, the layout of a transition, the layout of a network's
 // parameters. Plain values; no I/O.
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <vector>
 
 namespace corridor {
-
-// The two learned planners, in the order in which they are trained.
-enum class Phase : std::uint8_t { kMop = 0, kBp = 1 };
-inline constexpr int kPhases = 2;
-inline const char* phase_name(Phase phase) { return phase == Phase::kMop ? "MoP" : "BP"; }
 
 // How many numbers a planner sees, and among how many actions it chooses.
 struct PlannerShape {
@@ -33,13 +27,14 @@ inline PlannerShape mop_shape(int corridors_per_lane, int speed_changes, int cle
           3 * speed_changes};
 }
 
-// The behaviour planner: ego speed, set-point and lateral offset, ego lane (one-hot), the previous
-// command (one-hot), and five numbers on each of the lanes right, own and left.
+// The behaviour planner, which chooses among the skills (actor/driving/skills.h): ego speed,
+// set-point and lateral offset, ego lane (one-hot), the previous command (one-hot), and five
+// numbers on each of the lanes right, own and left.
+inline constexpr int kSkillCount = 3;
 inline constexpr int kBpScalars = 3;
-inline constexpr int kBpCommands = 3;
 inline constexpr int kBpPerLane = 5;
-inline PlannerShape bp_shape(int lanes) {
-  return {kBpScalars + lanes + kBpCommands + 3 * kBpPerLane, kBpCommands};
+inline PlannerShape bp_shape(int lanes, int skills = kSkillCount) {
+  return {kBpScalars + lanes + skills + 3 * kBpPerLane, skills};
 }
 
 // One n-step transition as `stride()` consecutive floats:

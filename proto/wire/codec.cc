@@ -9,6 +9,7 @@
 #include <memory>
 
 #include "proto/base/failure.h"
+#include "proto/settings/limits.h"
 #include "proto/settings/transition.h"
 #include "proto/wire/wire.capnp.h"
 
@@ -18,15 +19,6 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "wire.capnp's numbers are little-endian");
 
 using capnp::word;
-
-// The limits of wire.capnp.
-constexpr std::size_t kDataBytesMax = 64 * 1024 * 1024;
-constexpr std::size_t kActionsBytesMax = 1024 * 1024;
-constexpr std::size_t kRunIdBytesMax = 64;
-constexpr std::size_t kRefusalBytesMax = 512;
-constexpr std::size_t kDirectoryBytesMax = 4096;
-constexpr std::uint32_t kObservationsMax = 65536;
-constexpr std::uint32_t kCountMax = 65536;
 
 // Every message is one segment after a table of one word: (segments - 1, words of the first).
 constexpr std::size_t kTableBytes = sizeof(word);
@@ -141,16 +133,6 @@ Bytes encode_reply(const Opened& opened) {
                                   [&](auto root) { root.initOpened().setBatches(opened.batches); });
 }
 
-Bytes encode_reply(const Batch& batch) {
-  return build<wire::ReplayReply>(bytes_in(batch.rows, batch.keys, batch.weights), [&](auto root) {
-    auto to = root.initBatch();
-    to.setObservations(batch.observations);
-    to.setRows(data_of(batch.rows));
-    to.setKeys(data_of(batch.keys));
-    to.setWeights(data_of(batch.weights));
-  });
-}
-
 Bytes encode_reply(const Saved& saved) {
   return build<wire::ReplayReply>(0,
                                   [&](auto root) { root.initSaved().setComplete(saved.complete); });
@@ -173,11 +155,17 @@ Bytes encode_request(const SelectionOutcome& outcome) {
 }
 
 Bytes encode_reply(const Weights& weights) {
-  return build<wire::LearnerReply>(bytes_in(weights.mop, weights.bp), [&](auto root) {
+  static_assert(kNetworks.size() <= kNetworksMax);
+  std::size_t bytes = 0;
+  for (const NamedNetwork& network : kNetworks) bytes += bytes_in(weights.networks[network.id]);
+  return build<wire::LearnerReply>(bytes, [&](auto root) {
     auto to = root.initWeights();
     to.setVersion(weights.version);
-    to.setMop(data_of(weights.mop));
-    to.setBp(data_of(weights.bp));
+    auto networks = to.initNetworks(static_cast<unsigned>(kNetworks.size()));
+    for (unsigned i = 0; i < kNetworks.size(); ++i) {
+      networks[i].setName(text_of(kNetworks[i].name, kNetworkNameBytesMax));
+      networks[i].setParameters(data_of(weights.networks[kNetworks[i].id]));
+    }
   });
 }
 
@@ -293,7 +281,8 @@ Step read_step(wire::ReplayRequest::Step::Reader from) {
             values_of<float>(from.getPriorities(), "priorities"), from.getCount(),
             from.getImportanceExponent()};
   require_priorities(step.priorities, step.keys.size());
-  require(step.count <= kCountMax, "{} rows wanted, more than {}", step.count, kCountMax);
+  require(step.count <= kRowsPerStepMax, "{} rows wanted, more than {}", step.count,
+          kRowsPerStepMax);
   require(std::isfinite(step.importance_exponent), "an importance exponent of {}",
           step.importance_exponent);
   return step;
@@ -312,11 +301,18 @@ ReceivedBatch read_batch(wire::ReplayReply::Batch::Reader from) {
   return batch;
 }
 
-Batch copy_of(const ReceivedBatch& batch) {
-  return {batch.observations,
-          {batch.rows.begin(), batch.rows.end()},
-          {batch.keys.begin(), batch.keys.end()},
-          {batch.weights.begin(), batch.weights.end()}};
+Weights read_weights(wire::LearnerReply::Weights::Reader from) {
+  Weights weights{from.getVersion(), {}};
+  const auto networks = from.getNetworks();
+  require(networks.size() == kNetworks.size(), "{} networks, {} are known", networks.size(),
+          kNetworks.size());
+  for (const NamedNetwork& network : kNetworks) {
+    const auto sent = networks[static_cast<unsigned>(network.id)];
+    const std::string name = string_of(sent.getName(), "name", kNetworkNameBytesMax);
+    require(name == network.name, "a network '{}' in the place of '{}'", name, network.name);
+    weights.networks[network.id] = values_of<float>(sent.getParameters(), network.name);
+  }
+  return weights;
 }
 
 [[noreturn]] void unknown_kind(const char* name, unsigned kind) {
@@ -443,11 +439,10 @@ ReplayReply decode_replay_reply(ByteView bytes) {
         return Joined{from.getJoined().getNextRound(), read_open(from.getJoined().getOpen())};
       case ReplayReply::INSERTED:
         return Inserted{};
-      case ReplayReply::OPENED: {
+      case ReplayReply::OPENED:
         return Opened{from.getOpened().getBatches()};
-      }
       case ReplayReply::BATCH:
-        return copy_of(read_batch(from.getBatch()));
+        throw Malformed("a batch where another reply is due");
       case ReplayReply::SAVED:
         return Saved{from.getSaved().getComplete()};
     }
@@ -476,11 +471,8 @@ LearnerReply decode_learner_reply(ByteView bytes) {
   using wire::LearnerReply;
   return decode<LearnerReply>(bytes, [](LearnerReply::Reader from) -> corridor::LearnerReply {
     switch (from.which()) {
-      case LearnerReply::WEIGHTS: {
-        const auto weights = from.getWeights();
-        return Weights{weights.getVersion(), values_of<float>(weights.getMop(), "mop"),
-                       values_of<float>(weights.getBp(), "bp")};
-      }
+      case LearnerReply::WEIGHTS:
+        return read_weights(from.getWeights());
       case LearnerReply::NOTED:
         return Noted{};
     }

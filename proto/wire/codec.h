@@ -29,7 +29,7 @@ Bytes encode(const LearnerReply& reply);
 
 Header decode_header(ByteView bytes);
 ReplayRequest decode_replay_request(ByteView bytes);
-ReplayReply decode_replay_reply(ByteView bytes);
+ReplayReply decode_replay_reply(ByteView bytes);  // but for a Batch: decode_batch
 LearnerRequest decode_learner_request(ByteView bytes);
 LearnerReply decode_learner_reply(ByteView bytes);
 
@@ -52,7 +52,7 @@ struct ReceivedBatch {
   std::span<const float> weights;
   Body body;
 };
-// Nothing when the reply is another one. Checked as decode_replay_reply checks it.
+// Nothing when the reply is another one.
 std::optional<ReceivedBatch> decode_batch(Body body);
 
 }  // namespace corridor

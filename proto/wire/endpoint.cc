@@ -23,9 +23,8 @@ constexpr int kHeartbeatTimeout_ms = 10'000;
 constexpr int kConnectTimeout_ms = 2000;
 constexpr int kReconnectFirst_ms = 10;
 constexpr int kReconnectLast_ms = 200;
-// A reply to a client: two networks of the largest size (proto/wire/wire.capnp), and some.
-constexpr std::int64_t kReplyBytesMax = 192 * 1024 * 1024;
-constexpr std::size_t kRefusalBytesMax = 512;
+// A reply to a client: every network of the largest size, and some.
+constexpr std::int64_t kReplyBytesMax = (kNetworks.size() + 1) * kDataBytesMax;
 // Messages handled within one call before it looks at its deadline, whatever pours in.
 constexpr int kHandledAtOnce = 1024;
 // A ROUTER's message: routing id, header, body; a DEALER's: header, body.

@@ -16,6 +16,7 @@
 #include <string>
 
 #include "proto/system/clock.h"
+#include "proto/settings/limits.h"
 #include "proto/wire/bytes.h"
 #include "proto/wire/codec.h"
 #include "proto/wire/messages.h"
@@ -87,7 +88,7 @@ struct IncomingRequest {
 struct ServerLimits {
   std::size_t window = 8;                         // answers remembered for each client
   std::size_t clients = 4096;                     // known at a time; further ones are refused
-  std::size_t message_bytes = 128 * 1024 * 1024;  // larger ones close their connection
+  std::size_t message_bytes = 2 * kDataBytesMax;  // larger ones close their connection
 };
 
 // The serving side: any number of clients.
@@ -110,7 +111,8 @@ class Server {
   // gone, or has a new incarnation since, is dropped.
   void reply(const IncomingRequest& to, Body body);
 
-  // Tells the client that its request is impossible; it ends with this text (of <= 512 bytes).
+  // Tells the client that its request is impossible; it ends with this text (cut off at
+  // kRefusalBytesMax).
   void refuse(const IncomingRequest& request, const std::string& text);
 
   // Messages dropped or refused since they were malformed, foreign or outdated.

@@ -7,10 +7,12 @@
 #include <variant>
 #include <vector>
 
+#include "proto/settings/named_networks.h"
+
 namespace corridor {
 
 // Raised with every change of proto/wire/wire.capnp or of a meaning in it.
-inline constexpr std::uint32_t kProtocolVersion = 5;
+inline constexpr std::uint32_t kProtocolVersion = 6;
 
 enum class Role : std::uint16_t { kActor, kLearner };
 enum class MessageKind : std::uint16_t { kRequest, kReply, kPending, kRefused };
@@ -76,6 +78,7 @@ struct Opened {
   std::uint32_t batches = 0;
   bool operator==(const Opened&) const = default;
 };
+// Not among ReplayReply: it is written and read in place (proto/wire/codec.h).
 struct Batch {
   std::uint32_t observations = 0;
   std::vector<float> rows;
@@ -87,7 +90,7 @@ struct Saved {
   bool complete = false;
   bool operator==(const Saved&) const = default;
 };
-using ReplayReply = std::variant<Joined, Inserted, Opened, Batch, Saved>;
+using ReplayReply = std::variant<Joined, Inserted, Opened, Saved>;
 
 // To the learner.
 struct WeightsWanted {
@@ -107,8 +110,7 @@ using LearnerRequest = std::variant<WeightsWanted, SelectionOutcome>;
 // From the learner.
 struct Weights {
   std::uint64_t version = 0;
-  std::vector<float> mop;
-  std::vector<float> bp;
+  Networks networks;
   bool operator==(const Weights&) const = default;
 };
 struct Noted {

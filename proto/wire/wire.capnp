@@ -14,7 +14,8 @@
 # order, and answers a repeated one from its memory. A server that cannot answer yet (it waits for
 # others) answers each repetition with `pending`, so that a waiting client knows it alive.
 #
-# Data fields hold at most 64 MiB unless they say less; observations are at most 65536.
+# Limits are in proto/settings/limits.h: of a Data field kDataBytesMax, unless another one is named
+# beside it; of observations kObservationsMax.
 
 using Cxx = import "/capnp/c++.capnp";
 $Cxx.namespace("corridor::wire");
@@ -22,14 +23,14 @@ $Cxx.namespace("corridor::wire");
 struct Header {
   protocol @0 :UInt32;     # kProtocolVersion of proto/wire/messages.h; a server refuses any other
   runId @1 :Text;          # 32 hex digits, drawn at `corridor train`; a server refuses any other
-                           # (and drops more than 64 bytes)
+                           # (and drops more than kRunIdBytesMax bytes)
   role @2 :Role;           # of the client
   index @3 :UInt32;        # of the client among its role: 0 .. actors-1; 0 for the learner
   incarnation @4 :UInt64;  # grows with every start of the client (proto/system/identity.h): a
                            # lesser one is refused, also when it has never been seen
   sequence @5 :UInt64;     # of the request, from 1; a reply carries its request's
   kind @6 :Kind;
-  refusal @7 :Text;        # of `refused`: one line for people, at most 512 bytes
+  refusal @7 :Text;        # of `refused`: one line for people, at most kRefusalBytesMax bytes
 
   enum Role { actor @0; learner @1; }
   enum Kind {
@@ -45,7 +46,8 @@ struct OpenEpisode {
   # The episode that an actor is in at the end of a round. (seed, actions) drives it again bit for
   # bit, so this is an actor's whole state.
   episode @0 :UInt64;   # counts the actor's episodes in this phase, from 0
-  actions @1 :Data;     # one byte a step driven so far (actor/driving/action.h); <= 1 MiB
+  actions @1 :Data;     # one byte a step driven so far (actor/driving/action.h);
+                        # at most kActionsBytesMax bytes
 }
 
 struct ReplayRequest {
@@ -76,7 +78,7 @@ struct ReplayRequest {
       # Only in an open block. Answer: batch.
       keys @7 :Data;            # uint64, as they came in an earlier batch; may be empty
       priorities @8 :Data;      # float32 |TD error|, one a key; finite, >= 0
-      count @9 :UInt32;         # rows to draw, <= 65536; 0: none
+      count @9 :UInt32;         # rows to draw, at most kRowsPerStepMax; 0: none
       importanceExponent @10 :Float64;  # beta, in [0, 1]
     }
 
@@ -84,7 +86,7 @@ struct ReplayRequest {
       # learner, between blocks: write everything that belongs to rounds <= the last block's into
       # the directory, beside the serving (proto/run/checkpoints.h). To be repeated, between later
       # blocks, until the answer says that it is complete. Answer: saved, at once.
-      directory @11 :Text;      # <= 4096 bytes
+      directory @11 :Text;      # at most kDirectoryBytesMax bytes
       previous @12 :Text;       # the newest checkpoint, to link to what it has already; or empty
     }
   }
@@ -130,13 +132,18 @@ struct LearnerRequest {
   }
 }
 
+struct NamedParameters {
+  name @0 :Text;           # at most kNetworkNameBytesMax bytes
+  parameters @1 :Data;     # float32 (RunConfig::parameters)
+}
+
 struct LearnerReply {
   union {
     weights :group {
       version @0 :UInt64;
-      mop @1 :Data;            # float32 parameters (NetworkShape's order)
-      bp @2 :Data;             # the same; in the MoP phase the untrained BP
+      networks @1 :List(NamedParameters);  # all of kNetworks (proto/settings/named_networks.h), in
+                                           # its order; before its phase an untrained one
     }
-    noted @3 :Void;
+    noted @2 :Void;
   }
 }

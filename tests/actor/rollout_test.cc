@@ -38,8 +38,9 @@ std::vector<float> parameters(std::size_t count, std::uint64_t stream) {
 }
 
 Weights weights_of(const RunConfig& config, std::uint64_t version) {
-  return {version, parameters(config.parameters(Phase::kMop), version),
-          parameters(config.parameters(Phase::kBp), version + 1000)};
+  return {version,
+          {parameters(config.parameters(Phase::kMop), version),
+           parameters(config.parameters(Phase::kBp), version + 1000)}};
 }
 
 TimeAccount account;
@@ -158,7 +159,8 @@ TEST(PhaseRollout, TheMopIsTrainedUnderTheLearnedBpsCommandsWhereTheScenarioSays
   PhaseRollout b(config, 0, world_b, account, 0, {});
   Weights weights = weights_of(config, 0);
   const Insert under_one = a.drive_round(weights);
-  weights.bp = parameters(weights.bp.size(), 77);
+  std::vector<float>& bp = weights.networks[NetworkId::kBp];
+  bp = parameters(bp.size(), 77);
   EXPECT_NE(under_one.rows, b.drive_round(weights).rows);
 }
 

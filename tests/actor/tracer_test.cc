@@ -77,11 +77,13 @@ TEST_F(TraceEpisode, OfANewDriveIsThatOfTheEvaluationsEpisode) {
 
 TEST_F(TraceEpisode, HasTheValuesThatLearnedPlannersChoseBy) {
   Networks networks;
-  networks.mop.assign(config_.parameters(Phase::kMop), 0.01f);
-  networks.bp.assign(config_.parameters(Phase::kBp), 0.01f);
+  for (const NamedNetwork& network : kNetworks) {
+    networks[network.id].assign(config_.parameters(network.id), 0.01f);
+  }
   FakeWorld world(config_);
   const EpisodeTrace trace =
       trace_drive(config_, networks, planner_pair("hierarchical"), 3, 5, world);
+  EXPECT_EQ(trace.commands, (std::vector<std::string>{"keep", "left", "right"}));
   for (const TracedStep& step : trace.steps) {
     if (!step.decision) continue;
     EXPECT_EQ(step.decision->bp_values.size(), 3u);

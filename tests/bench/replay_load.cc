@@ -29,6 +29,7 @@
 #include "proto/wire/endpoint.h"
 #include "replay/replay_service.h"
 #include "replay/serve.h"
+#include "tests/support/batches.h"
 #include "tests/support/temporary_directory.h"
 
 namespace corridor::bench {
@@ -52,13 +53,15 @@ struct Load {
   bool floor = false;
 };
 
-// The row length that comes nearest: two observations and three numbers of 4 bytes.
-RowLayout layout_of(const Load& load) {
-  return {std::max(1, (load.row_bytes / static_cast<int>(sizeof(float)) - 3) / 2)};
-}
-
+// Rows of the length that comes nearest: two observations and five numbers of 4 bytes; a MoP's
+// observation has 3 + 5 corridors + 6 clearance steps.
 RunConfig config_of(const Load& load) {
+  const int observations = (load.row_bytes / static_cast<int>(sizeof(float)) - 5) / 2;
   RunConfig config;
+  config.planner.clearance_steps = std::max(0, observations - kMopScalars) % kMopPerCorridor;
+  config.planner.corridors_per_lane =
+      std::max(1, (observations - kMopScalars - kMopMoves * config.planner.clearance_steps) /
+                      kMopPerCorridor);
   config.run.actors = load.actors;
   config.schedule.steps_per_round = load.chunk;
   for (DqnSettings& dqn : config.dqn) {
@@ -68,6 +71,8 @@ RunConfig config_of(const Load& load) {
   }
   return config;
 }
+
+RowLayout layout_of(const Load& load) { return {config_of(load).shape(Phase::kMop).observations}; }
 
 std::vector<float> numbers(std::size_t count, std::uint64_t stream) {
   std::vector<float> values(count);
@@ -97,8 +102,8 @@ void answer_from_memory(Server& server, const Load& load) {
   batch.rows = numbers(kRowsPerStep * layout.stride(), 2);
   batch.keys.assign(kRowsPerStep, 1);
   batch.weights.assign(kRowsPerStep, 1.0F);
-  const Body drawn = encode(ReplayReply(batch));
-  const Body nothing = encode(ReplayReply(Batch{}));
+  const Body drawn = testing_support::encoded(batch);
+  const Body nothing = testing_support::encoded({});
   const Body inserted = encode(ReplayReply(Inserted{}));
   const Body opened = encode(ReplayReply(Opened{1}));
   constexpr std::size_t kSmall = 1024;
@@ -127,8 +132,7 @@ int serve(const Load& load, const Address& address, const std::filesystem::path&
       return 0;
     }
     const RunConfig config = config_of(load);
-    const RowLayout layout = layout_of(load);
-    replay::ReplayService service(config, {layout, layout});
+    replay::ReplayService service(config);
     MetricsWriter metrics(metrics_file);
     replay::serve(server, service, metrics, config, {stop_requested});
     return 0;

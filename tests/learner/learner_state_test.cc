@@ -31,7 +31,7 @@ LearnerState some_state(const RunConfig& config, Phase phase) {
   state.td = {some(phase, 2), some(phase, 3), some(phase, 4), some(phase, 5), 777};
   Weights older = state.published[0];
   older.version = state.next_round - 1;
-  Weights newest{state.next_round, some(Phase::kMop, 6), some(Phase::kBp, 6)};
+  const Weights newest{state.next_round, {some(Phase::kMop, 6), some(Phase::kBp, 6)}};
   state.published = {older, newest};
   state.best = Candidate{state.next_round - 2, 1.0 / 3.0, some(phase, 8)};
   return state;
@@ -63,14 +63,15 @@ TEST(Checkpoint, NamesTheNetworksToDriveWith) {
   LearnerState state = some_state(config, Phase::kMop);
   TensorFile file = to_tensors(state, config);
   EXPECT_EQ(file.get<float>("mop", "file"), state.best->parameters);
-  EXPECT_EQ(file.get<float>("bp", "file"), state.published[1].bp);
+  EXPECT_EQ(file.get<float>("bp", "file"), state.published[1].networks[Phase::kBp]);
 
   state.best.reset();
-  EXPECT_EQ(to_tensors(state, config).get<float>("mop", "file"), state.published[1].mop);
+  EXPECT_EQ(to_tensors(state, config).get<float>("mop", "file"),
+            state.published[1].networks[Phase::kMop]);
 
   state = some_state(config, Phase::kBp);
   file = to_tensors(state, config);
-  EXPECT_EQ(file.get<float>("mop", "file"), state.published[1].mop);
+  EXPECT_EQ(file.get<float>("mop", "file"), state.published[1].networks[Phase::kMop]);
   EXPECT_EQ(file.get<float>("bp", "file"), state.best->parameters);
 }
 

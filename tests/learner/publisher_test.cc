@@ -3,8 +3,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <limits>
-
 #include "proto/base/failure.h"
 #include "proto/wire/codec.h"
 #include "tests/learner/small_run.h"
@@ -18,7 +16,7 @@ using testing::HasSubstr;
 constexpr Duration kPatience{5000};  // never used up when all is well
 
 Weights weights(std::uint64_t version) {
-  return {version, {1.0f * static_cast<float>(version)}, {2.0f}};
+  return {version, {{{1.0f * static_cast<float>(version)}, {2.0f}}}};
 }
 
 class PublisherTest : public testing::Test {

@@ -10,6 +10,7 @@
 #include "proto/wire/codec.h"
 #include "tests/learner/scripted_server.h"
 #include "tests/learner/small_run.h"
+#include "tests/support/batches.h"
 
 namespace corridor::learner {
 namespace {
@@ -28,18 +29,17 @@ struct Connection {
 };
 
 // Keys count on from 0; a row's values are its key.
-std::function<std::optional<ReplayReply>(const ReplayRequest&)> batches() {
-  return
-      [key = std::uint64_t{0}](const ReplayRequest& request) mutable -> std::optional<ReplayReply> {
-        Batch batch;
-        batch.observations = 1;
-        for (std::uint32_t i = 0; i < std::get<Step>(request).count; ++i, ++key) {
-          batch.keys.push_back(key);
-          batch.weights.push_back(static_cast<float>(key));
-          batch.rows.insert(batch.rows.end(), RowLayout{1}.stride(), static_cast<float>(key));
-        }
-        return batch;
-      };
+Script batches() {
+  return [key = std::uint64_t{0}](const ReplayRequest& request) mutable -> std::optional<Body> {
+    Batch batch;
+    batch.observations = 1;
+    for (std::uint32_t i = 0; i < std::get<Step>(request).count; ++i, ++key) {
+      batch.keys.push_back(key);
+      batch.weights.push_back(static_cast<float>(key));
+      batch.rows.insert(batch.rows.end(), RowLayout{1}.stride(), static_cast<float>(key));
+    }
+    return testing_support::encoded(batch);
+  };
 }
 
 constexpr std::uint32_t kBatchSize = 64;
@@ -113,7 +113,7 @@ TEST(ReplayClient, GivesUpABlockWhenToldTo) {
 }
 
 TEST(ReplayClient, RefusesABatchOfAnotherSize) {
-  ScriptedServer server([](const ReplayRequest&) { return Batch{}; });
+  ScriptedServer server([](const ReplayRequest&) { return testing_support::encoded({}); });
   Connection connection(server);
   try {
     connection.replay.run_block({1, 2, 0.5}, key_as_priority);
@@ -124,7 +124,7 @@ TEST(ReplayClient, RefusesABatchOfAnotherSize) {
 }
 
 TEST(ReplayClient, RefusesAnAnswerToAnotherQuestion) {
-  ScriptedServer server([](const ReplayRequest&) { return Inserted{}; });
+  ScriptedServer server([](const ReplayRequest&) { return Body(encode(ReplayReply(Inserted{}))); });
   Connection connection(server);
   EXPECT_THROW(connection.replay.save("/nowhere", ""), Failure);
 }

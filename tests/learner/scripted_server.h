@@ -15,10 +15,13 @@
 
 namespace corridor::learner {
 
+// The reply's bytes; nothing: no answer.
+using Script = std::function<std::optional<Body>(const ReplayRequest&)>;
+
 // Notes what it is asked, and answers by the script on a thread of its own.
 class ScriptedServer {
  public:
-  explicit ScriptedServer(std::function<std::optional<ReplayReply>(const ReplayRequest&)> script)
+  explicit ScriptedServer(Script script)
       : script_(std::move(script)), thread_([this] { serve(); }) {}
   ~ScriptedServer() {
     end_ = true;
@@ -40,12 +43,12 @@ class ScriptedServer {
       const auto request = server.receive(Duration{5});
       if (!request) continue;
       requests_.push_back(decode_replay_request(request->body));
-      if (const auto reply = script_(requests_.back())) server.reply(*request, encode(*reply));
+      if (const auto reply = script_(requests_.back())) server.reply(*request, *reply);
     }
   }
 
   const std::string address_ = fresh_address("scripted");
-  std::function<std::optional<ReplayReply>(const ReplayRequest&)> script_;
+  Script script_;
   std::atomic<bool> end_ = false;
   std::vector<ReplayRequest> requests_;
   std::thread thread_;

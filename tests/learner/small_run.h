@@ -73,7 +73,7 @@ inline Insert made_up_chunk(const RunConfig& config, std::uint64_t round, std::u
                             const Weights& weights) {
   const Phase phase = Schedule(config).phase_of(round);
   const PlannerShape shape = config.shape(phase);
-  const float taste = (phase == Phase::kMop ? weights.mop : weights.bp)[0];
+  const float taste = weights.networks[phase][0];
   Insert chunk;
   chunk.round = round;
   chunk.observations = static_cast<std::uint32_t>(shape.observations);

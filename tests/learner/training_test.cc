@@ -65,9 +65,9 @@ TEST(Training, TrainsBothPhasesToTheEnd) {
                                                 Key(7), Key(8), Key(9)));
   const LearnerState start = initial_state(small_config());
   EXPECT_EQ(run.weights.at(0), start.published[0]);
-  EXPECT_NE(run.weights.at(4).mop, start.published[0].mop);
-  EXPECT_EQ(run.weights.at(4).bp, start.published[0].bp);
-  EXPECT_NE(run.weights.at(9).bp, start.published[0].bp);
+  EXPECT_NE(run.weights.at(4).networks[Phase::kMop], start.published[0].networks[Phase::kMop]);
+  EXPECT_EQ(run.weights.at(4).networks[Phase::kBp], start.published[0].networks[Phase::kBp]);
+  EXPECT_NE(run.weights.at(9).networks[Phase::kBp], start.published[0].networks[Phase::kBp]);
 }
 
 TEST(RunningAverage, ForgetsAnEthInEachWindowHoweverTheUpdatesAreDivided) {
@@ -93,10 +93,11 @@ TEST(Training, PublishesTheRunningAverageOfWhatItTrains) {
   mean.run();
   // The chunks follow the weights that drive: the first version with updates is comparable.
   std::uint64_t first = 1;
-  while (last.weights.at(first).mop == last.weights.at(0).mop) ++first;
-  const std::vector<float>& start = last.weights.at(0).mop;
-  const std::vector<float>& trained = last.weights.at(first).mop;
-  const std::vector<float>& driven = mean.weights.at(first).mop;
+  while (last.weights.at(first).networks[Phase::kMop] == last.weights.at(0).networks[Phase::kMop])
+    ++first;
+  const std::vector<float>& start = last.weights.at(0).networks[Phase::kMop];
+  const std::vector<float>& trained = last.weights.at(first).networks[Phase::kMop];
+  const std::vector<float>& driven = mean.weights.at(first).networks[Phase::kMop];
   double moved = 0.0, moved_in_training = 0.0;
   for (std::size_t i = 0; i < start.size(); ++i) {
     moved += std::abs(driven[i] - start[i]);
@@ -123,9 +124,10 @@ TEST(Training, FreezesTheBestMopForTheBpsPhase) {
     if (reward > best) best_round = round;
     best = std::max(best, reward);
   }
-  const std::vector<float>& expected = run.weights.at(schedule.weights_version(best_round)).mop;
+  const std::vector<float>& expected =
+      run.weights.at(schedule.weights_version(best_round)).networks[Phase::kMop];
   for (std::uint64_t version = kMopRounds; version <= 9; ++version) {
-    EXPECT_EQ(run.weights.at(version).mop, expected) << version;
+    EXPECT_EQ(run.weights.at(version).networks[Phase::kMop], expected) << version;
   }
   EXPECT_EQ(place.newest("learner.safetensors").get<float>("mop", "file"), expected);
 }
@@ -176,10 +178,10 @@ TEST(Training, GivesUpOnActorsThatHangInABlockOrInAnEvaluationAfterHalfAnHour) {
 
 TEST(Training, GivesUpOnACheckpointThatIsNotCompleteAfterHalfAnHour) {
   Place place;
-  ScriptedServer server([](const ReplayRequest& request) -> std::optional<ReplayReply> {
-    if (std::holds_alternative<Join>(request)) return Joined{};
-    if (std::holds_alternative<OpenBlock>(request)) return Opened{0};
-    return Saved{false};
+  ScriptedServer server([](const ReplayRequest& request) -> std::optional<Body> {
+    if (std::holds_alternative<Join>(request)) return encode(Joined{});
+    if (std::holds_alternative<OpenBlock>(request)) return encode(Opened{0});
+    return encode(Saved{false});
   });
   Server socket(fresh_address("learner"), kRunId);
   Publisher publisher(socket, kActors);

@@ -14,6 +14,7 @@
 #include "proto/run/run_directory.h"
 #include "proto/wire/codec.h"
 #include "tests/replay/small_run.h"
+#include "tests/support/batches.h"
 #include "tests/support/temporary_directory.h"
 
 namespace corridor::replay {
@@ -33,15 +34,16 @@ Reply reply_of(const Outcome& outcome) {
     ADD_FAILURE() << "refused: " << refused->text;
     return {};
   }
-  if (const auto* batch = std::get_if<EncodedBatch>(&outcome)) {
-    return std::get<Reply>(decode_replay_reply(batch->body));
-  }
   const auto* reply = std::get_if<ReplayReply>(&outcome);
   if (reply == nullptr || !std::holds_alternative<Reply>(*reply)) {
     ADD_FAILURE() << "another reply";
     return {};
   }
   return std::get<Reply>(*reply);
+}
+
+Batch batch_of(const Outcome& outcome) {
+  return testing_support::decoded_batch(std::get<EncodedBatch>(outcome).body);
 }
 
 std::string refusal_of(const Outcome& outcome) {
@@ -74,7 +76,7 @@ void train(ReplayService& service, std::uint32_t batches, std::vector<Batch>& lo
   step.importance_exponent = 0.5;
   for (std::uint32_t i = 0; i <= batches; ++i) {
     step.count = i < batches ? 8 : 0;
-    Batch batch = reply_of<Batch>(service.handle(kLearner, step));
+    Batch batch = batch_of(service.handle(kLearner, step));
     step.keys = batch.keys;
     step.priorities = batch.weights;
     log.push_back(std::move(batch));
@@ -238,8 +240,8 @@ TEST_F(ReplayServiceTest, APhaseStartsAfreshButForItsKeys) {
   EXPECT_EQ(figure(service, "replay/sampled"), 0);
   EXPECT_EQ(figure(service, "replay/stale_priorities"), 0);
 
-  const Batch batch = reply_of<Batch>(
-      service.handle(kLearner, Step{old_keys, std::vector<float>(8, 1e9F), 8, 0.4}));
+  const Batch batch =
+      batch_of(service.handle(kLearner, Step{old_keys, std::vector<float>(8, 1e9F), 8, 0.4}));
   EXPECT_EQ(batch.observations, static_cast<std::uint32_t>(bp_shape(3).observations));
   EXPECT_GT(*std::min_element(batch.keys.begin(), batch.keys.end()),
             *std::max_element(old_keys.begin(), old_keys.end()));

@@ -209,7 +209,7 @@ TEST(Scenarios, TheSmokeTestDiffersInBudgetsOnly) {
   EXPECT_LT(smoke.phase(Phase::kBp).steps, 100'000);
   smoke.schedule = paper.schedule;
   smoke.evaluation = paper.evaluation;
-  for (std::size_t phase = 0; phase < kPhases; ++phase) {
+  for (std::size_t phase = 0; phase < kNetworks.size(); ++phase) {
     smoke.dqn[phase].steps = paper.dqn[phase].steps;
     smoke.dqn[phase].epsilon_steps = paper.dqn[phase].epsilon_steps;
   }

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "actor/driving/clearance.h"
+#include "actor/driving/skills.h"
 #include "proto/settings/transition.h"
 #include "tests/actor/driving/scenes.h"
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "actor/driving/skills.h"
 #include "tests/actor/driving/scenes.h"
 
 namespace corridor::driving {

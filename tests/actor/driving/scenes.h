@@ -20,6 +20,10 @@ inline Ego ego_in_the_middle() {
   return {.s_m = 100.0, .d_m = 4.8, .speed_mps = 10.0, .set_point_mps = 10.0};
 }
 
+inline Ego ego_at(double d_m, double speed_mps) {
+  return {.s_m = 100.0, .d_m = d_m, .speed_mps = speed_mps, .set_point_mps = speed_mps};
+}
+
 class Draws {
  public:
   explicit Draws(std::uint64_t seed) : seed_(seed) {}

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "actor/driving/skills.h"
 #include "tests/actor/driving/scenes.h"
 
 namespace corridor::driving {

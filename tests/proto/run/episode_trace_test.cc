@@ -13,6 +13,7 @@ using testing::ThrowsMessage;
 
 EpisodeTrace trace() {
   EpisodeTrace trace;
+  trace.commands = {"keep", "left"};
   trace.step_s = 0.5;
   trace.lanes = 3;
   trace.lane_width_m = 3.2;
@@ -30,6 +31,7 @@ TEST(EpisodeTrace, IsTheSameAfterWritingAndReading) {
   const Json object = to_json(whole);
   EXPECT_EQ(to_json(parse_episode_trace(object, "file")), object);
   const EpisodeTrace read = parse_episode_trace(object, "file");
+  EXPECT_EQ(read.commands, whole.commands);
   EXPECT_EQ(read.steps[0].command, 1);
   EXPECT_EQ(read.steps[0].others[0].s_m, 120.0);
   EXPECT_EQ(read.steps[1].command, std::nullopt);
@@ -59,6 +61,9 @@ TEST(EpisodeTrace, OfAnythingElseIsRefusedByTheFilesName) {
   }
   Json object = good;
   object["steps"] = Json::array();
+  refused(object);
+  object = good;
+  object["steps"][0]["command"] = 2;
   refused(object);
   object = good;
   object["steps"][0]["ego"].push_back(1);

@@ -18,8 +18,12 @@ using testing::ThrowsMessage;
 class NetworksTest : public testing::Test {
  protected:
   Networks networks_of(float value) const {
-    return {std::vector<float>(config_.parameters(Phase::kMop), value),
-            std::vector<float>(config_.parameters(Phase::kBp), -value)};
+    Networks networks;
+    for (const NamedNetwork& network : kNetworks) {
+      networks[network.id].assign(config_.parameters(network.id), value);
+      value = -value;
+    }
+    return networks;
   }
 
   RunConfig config_;
@@ -37,8 +41,8 @@ TEST_F(NetworksTest, ARunHasNoneAtFirstThenThoseGivenThenThoseOfItsCheckpoint) {
 
   const Checkpoints checkpoints(directory_.checkpoints());
   TensorFile learner;
-  learner.put("mop", networks_of(0.25f).mop);
-  learner.put("bp", networks_of(0.25f).bp);
+  learner.put("mop", networks_of(0.25f)[NetworkId::kMop]);
+  learner.put("bp", networks_of(0.25f)[NetworkId::kBp]);
   write_tensors(checkpoints.begin(7) / "learner.safetensors", learner);
   checkpoints.commit(7, 2);
   EXPECT_EQ(newest_networks(directory_, config_), networks_of(0.25f));
@@ -47,7 +51,7 @@ TEST_F(NetworksTest, ARunHasNoneAtFirstThenThoseGivenThenThoseOfItsCheckpoint) {
 
 TEST_F(NetworksTest, OfAnotherSizeTheyAreRefusedByFileAndPlanner) {
   Networks networks = networks_of(1.0f);
-  networks.bp.pop_back();
+  networks[NetworkId::kBp].pop_back();
   write_networks(directory_, networks);
   EXPECT_THAT([&] { newest_networks(directory_, config_); },
               ThrowsMessage<Failure>(

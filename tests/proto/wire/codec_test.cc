@@ -1,5 +1,6 @@
 #include "proto/wire/codec.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -7,9 +8,13 @@
 #include <limits>
 
 #include "proto/base/random.h"
+#include "tests/support/batches.h"
 
 namespace corridor {
 namespace {
+
+using testing_support::decoded_batch;
+using testing_support::encoded;
 
 std::vector<float> floats(std::size_t count) {
   std::vector<float> values;
@@ -49,13 +54,13 @@ std::vector<ReplayRequest> replay_requests() {
 }
 std::vector<ReplayReply> replay_replies() {
   return {Joined{4, {2, std::vector<std::uint8_t>(999, 17)}}, Joined{}, Inserted{}, Opened{4},
-          Batch{2, floats(18), {8, 9}, {1.0F, 0.25F}},        Batch{},  Saved{true}};
+          Saved{true}};
 }
 std::vector<LearnerRequest> learner_requests() {
   return {WeightsWanted{6}, SelectionOutcome{1, 2, 3, -4.5, 6}};
 }
 std::vector<LearnerReply> learner_replies() {
-  return {Weights{6, floats(101), floats(7)}, Weights{}, Noted{}};
+  return {Weights{6, {floats(101), floats(7)}}, Weights{}, Noted{}};
 }
 
 // Calls `use(bytes, decode again and encode)` with a message of every kind.
@@ -169,41 +174,51 @@ void expect_malformed(const Value& value, const std::string& reason) {
   }
 }
 
-TEST(Codec, ABatchFilledInItsMessageIsTheBatchThatWouldHaveBeenEncoded) {
+TEST(Codec, ABatchFilledInItsMessageIsLookedAtInPlace) {
   for (const std::size_t rows : {0, 1, 3, 1000}) {
     const Batch batch = batch_of(rows);
-    const BatchToFill place = batch_to_fill(batch.observations, rows);
-    ASSERT_EQ(place.rows.size(), batch.rows.size());
-    std::copy(batch.rows.begin(), batch.rows.end(), place.rows.begin());
-    std::copy(batch.keys.begin(), batch.keys.end(), place.keys.begin());
-    std::copy(batch.weights.begin(), batch.weights.end(), place.weights.begin());
-    const Bytes encoded = encode(ReplayReply(batch));
-    const ByteView filled = place.body;
-    EXPECT_TRUE(std::equal(filled.begin(), filled.end(), encoded.begin(), encoded.end()));
-
-    // Looked at in place, from aligned bytes and others.
-    for (const std::size_t offset : {0, 1}) {
+    const Body filled = encoded(batch);
+    const ByteView bytes = filled;
+    for (const std::size_t offset : {0, 1}) {  // aligned, and not
       Bytes moved(offset);
-      moved.insert(moved.end(), encoded.begin(), encoded.end());
+      moved.insert(moved.end(), bytes.begin(), bytes.end());
       const auto owner = std::make_shared<const Bytes>(moved);
-      const auto received = decode_batch(Body(owner, ByteView(*owner).subspan(offset)));
-      ASSERT_TRUE(received.has_value());
-      EXPECT_EQ(received->observations, batch.observations);
-      EXPECT_TRUE(std::ranges::equal(received->rows, batch.rows));
-      EXPECT_TRUE(std::ranges::equal(received->keys, batch.keys));
-      EXPECT_TRUE(std::ranges::equal(received->weights, batch.weights));
+      EXPECT_EQ(decoded_batch(Body(owner, ByteView(*owner).subspan(offset))), batch);
     }
+    EXPECT_THROW(decode_replay_reply(filled), Malformed);
   }
 }
 
 TEST(Codec, AnotherReplyIsNoBatchAndADamagedOneIsMalformed) {
   EXPECT_FALSE(decode_batch(encode(ReplayReply(Inserted{}))).has_value());
-  Batch batch = batch_of(3);
-  batch.keys.pop_back();
-  EXPECT_THROW(decode_batch(encode(ReplayReply(batch))), Malformed);
-  Bytes torn = encode(ReplayReply(batch_of(3)));
-  torn.erase(torn.end() - 8, torn.end());
-  EXPECT_THROW(decode_batch(torn), Malformed);
+  const Body whole = encoded(batch_of(3));
+  const ByteView bytes = whole;
+  for (std::size_t size = 0; size < bytes.size(); ++size) {
+    EXPECT_THROW(decode_batch(Bytes(bytes.begin(), bytes.begin() + static_cast<int>(size))),
+                 Malformed);
+  }
+}
+
+TEST(Codec, FlippedBytesOfABatchGiveMalformedOrAsManyKeysAndWeightsAsRows) {
+  const Body whole = encoded(batch_of(3));
+  const ByteView bytes = whole;
+  int malformed = 0;
+  for (std::size_t at = 0; at < bytes.size(); ++at) {
+    for (int bit = 0; bit < 8; ++bit) {
+      Bytes damaged(bytes.begin(), bytes.end());
+      damaged[at] ^= static_cast<std::byte>(1 << bit);
+      try {
+        const std::optional<ReceivedBatch> batch = decode_batch(std::move(damaged));
+        if (!batch) continue;  // another reply
+        EXPECT_EQ(batch->keys.size(), batch->weights.size());
+        const RowLayout layout{static_cast<int>(batch->observations)};
+        EXPECT_EQ(batch->rows.size(), batch->keys.size() * layout.stride());
+      } catch (const Malformed&) {
+        ++malformed;
+      }
+    }
+  }
+  EXPECT_GT(malformed, 100);
 }
 
 TEST(Codec, RowsMustBeWhole) {
@@ -240,14 +255,14 @@ TEST(Codec, CountAndExponentAreBounded) {
   expect_malformed(Step{{}, {}, 1, std::numeric_limits<double>::quiet_NaN()}, "exponent");
 }
 
-TEST(Codec, ABatchHasAKeyAndAWeightForEachRow) {
-  const Batch good{2, floats(18), {8, 9}, {1.0F, 0.25F}};
-  Batch batch = good;
-  batch.keys.pop_back();
-  EXPECT_THROW(decode_replay_reply(encode(ReplayReply(batch))), Malformed);
-  batch = good;
-  batch.weights.push_back(1.0F);
-  EXPECT_THROW(decode_replay_reply(encode(ReplayReply(batch))), Malformed);
+TEST(Codec, WeightsNameEveryNetworkInItsPlace) {
+  const Bytes good = encode(LearnerReply(Weights{6, {floats(3), floats(2)}}));
+  const std::string text(reinterpret_cast<const char*>(good.data()), good.size());
+  Bytes renamed = good;
+  renamed[text.find("mop")] = std::byte{'t'};
+  EXPECT_THAT([&] { decode_learner_reply(renamed); },
+              testing::ThrowsMessage<Malformed>(
+                  testing::HasSubstr("a network 'top' in the place of 'mop'")));
 }
 
 // Decoding one kind of message as another must not crash either; what comes out is the caller's to

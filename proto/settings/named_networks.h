@@ -1,0 +1,51 @@
+// The networks of a run, by name, in the order in which they are trained. A further one needs an id
+// and a row here, its shape, and what its phase trains it on (actor/rollout.h).
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "proto/settings/transition.h"
+
+namespace corridor {
+
+struct RunConfig;
+
+// Each network is trained in a phase of its own, so one id names both.
+enum class NetworkId : std::uint8_t { kMop = 0, kBp = 1 };
+using Phase = NetworkId;
+
+struct NamedNetwork {
+  NetworkId id;            // its place in the table
+  const char* name;        // of its tensors and of its table in a scenario
+  const char* phase_name;  // in metrics, and to people
+  PlannerShape (*shape)(const RunConfig& config);
+};
+
+PlannerShape mop_shape(const RunConfig& config);
+PlannerShape bp_shape(const RunConfig& config);
+
+inline constexpr std::array kNetworks = {
+    NamedNetwork{NetworkId::kMop, "mop", "MoP", mop_shape},
+    NamedNetwork{NetworkId::kBp, "bp", "BP", bp_shape},
+};
+
+inline constexpr const NamedNetwork& named_network(NetworkId id) {
+  return kNetworks[static_cast<std::size_t>(id)];
+}
+inline const char* phase_name(Phase phase) { return named_network(phase).phase_name; }
+
+// A set of parameters: of each network as many as RunConfig::parameters says.
+struct Networks {
+  std::array<std::vector<float>, kNetworks.size()> by_id;
+
+  std::vector<float>& operator[](NetworkId id) { return by_id[static_cast<std::size_t>(id)]; }
+  const std::vector<float>& operator[](NetworkId id) const {
+    return by_id[static_cast<std::size_t>(id)];
+  }
+  bool operator==(const Networks&) const = default;
+};
+
+}  // namespace corridor
