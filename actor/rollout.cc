@@ -16,7 +16,8 @@ PhaseRollout::PhaseRollout(const RunConfig& config, int actor, world::World& wor
       driving_(driving_settings(config)),
       schedule_(config),
       phase_(schedule_.phase_of(next_round)),
-      random_commands_(phase_ == Phase::kMop && config.schedule.mop_commands == "random"),
+      random_commands_(phase_ == Phase::kMop &&
+                       config.schedule.mop_commands == MopCommands::kRandom),
       actor_(actor),
       next_round_(next_round),
       episode_(config, world),

@@ -13,8 +13,8 @@ class CpuNetworks : public TdNetworks {
   CpuNetworks(const NetworkShape& shape, const DqnSettings& dqn, const TdState& state)
       : shape_(shape),
         dqn_(dqn),
-        online_(shape, "cpu"),
-        target_(shape, "cpu"),
+        online_(shape, Device::kCpu),
+        target_(shape, Device::kCpu),
         gradient_(shape.parameters()),
         mean_gradient_(state.mean_gradient),
         mean_squared_gradient_(state.mean_squared_gradient),

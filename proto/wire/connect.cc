@@ -14,7 +14,7 @@ std::string hash_of(std::string_view content) {
 }  // namespace
 
 Addresses addresses(const RunSettings& settings, const std::string& run_id) {
-  if (settings.transport == "tcp") {
+  if (settings.transport == Transport::kTcp) {
     return {fmt::format("tcp://{}:{}", settings.host, settings.replay_port),
             fmt::format("tcp://{}:{}", settings.host, settings.learner_port)};
   }
