@@ -17,7 +17,7 @@ PhaseRollout::PhaseRollout(const RunConfig& config, int actor, world::World& wor
       schedule_(config),
       phase_(schedule_.phase_of(next_round)),
       trains_bp_(phase_ == Phase::kBp),
-      random_commands_(!trains_bp_ && config.schedule.mop_commands == "random"),
+      random_commands_(!trains_bp_ && config.schedule.mop_commands == MopCommands::kRandom),
       actor_(actor),
       next_round_(next_round),
       episode_(config, world),

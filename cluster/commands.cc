@@ -15,7 +15,6 @@
 #include "proto/base/failure.h"
 #include "proto/run/fingerprint.h"
 #include "proto/settings/planner_pairs.h"
-#include "proto/settings/worlds.h"
 #include "proto/system/command_line.h"
 #include "proto/system/program.h"
 
@@ -65,7 +64,7 @@ void declare_world(CLI::App& app, Arguments& arguments, EvaluationWorld& into) {
   app.add_option("--scenario", into.scenario,
                  "drive in this scenario's world (TOML); the run's own unless given");
   std::string worlds = "what the ego drives with (dynamics.world):";
-  for (const WorldKind& world : kWorlds) {
+  for (const auto& world : kChoices<WorldKind>) {
     worlds += fmt::format("\n{} ({})", world.name, world.meaning);
   }
   app.add_option("--world", arguments.world, worlds);

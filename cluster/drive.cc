@@ -11,7 +11,6 @@
 #include "cluster/results/evaluation_result.h"
 #include "proto/base/failure.h"
 #include "proto/base/format.h"
-#include "proto/config/run_config.h"
 #include "proto/run/run_directory.h"
 #include "proto/system/files.h"
 
@@ -23,28 +22,21 @@ namespace fs = std::filesystem;
 // What is shown before a collision.
 constexpr double kBeforeCollision_s = 8.0;
 
-// Everything that is driven is of one run, in one world.
-struct Place {
-  RunDirectory trained;
-  RunDirectory directory;  // of the world
-  RunConfig config;
-};
-
-EpisodeTrace traced(const Place& place, std::vector<std::string> arguments) {
+EpisodeTrace traced(const EvaluationPlace& place, std::vector<std::string> arguments) {
   arguments.insert(arguments.end(), {"--networks", place.trained.root().string()});
   return traced_by_actor(place.directory, arguments, std::chrono::minutes(10));
 }
 
-EpisodeTrace recorded(const Place& place, const fs::path& file) {
+EpisodeTrace recorded(const EvaluationPlace& place, const fs::path& file) {
   return traced(place, {"--trace", file.string()});
 }
 
-std::string in_world(const Place& place) {
-  const DynamicsSettings& dynamics = place.config.dynamics;
-  return dynamics.world == "kinematic" ? std::string() : ", " + dynamics.world;
+std::string in_world(const EvaluationPlace& place) {
+  const WorldKind world = place.config.dynamics.world;
+  return world == WorldKind::kKinematic ? std::string() : fmt::format(", {}", name_of(world));
 }
 
-std::vector<Clip> collisions(const Place& place, const DriveOptions& options) {
+std::vector<Clip> collisions(const EvaluationPlace& place, const DriveOptions& options) {
   std::vector<Clip> clips;
   for (const EvaluationResult& result : read_evaluations(place.directory.evaluation())) {
     if (result.planner != options.planner || result.seed != options.seed.value_or(result.seed))
@@ -67,14 +59,6 @@ std::vector<Clip> collisions(const Place& place, const DriveOptions& options) {
   return clips;
 }
 
-Place place_of(const DriveOptions& options) {
-  const RunDirectory trained = RunDirectory::open(options.run);
-  const RunDirectory directory = directory_to_drive_in(trained, options.world);
-  const RunConfig config = load_run_config(directory.config());
-  complete_sumo_files(directory, config);
-  return {trained, directory, config};
-}
-
 }  // namespace
 
 int drive(const DriveOptions& options) {
@@ -82,7 +66,7 @@ int drive(const DriveOptions& options) {
     throw Failure("--from {} --seconds {} --interval {}: give a stretch of time", options.from_s,
                   options.seconds, options.interval_s);
   }
-  const Place place = place_of(options);
+  const EvaluationPlace place = evaluation_place(options.run, options.world);
   std::vector<Clip> clips;
   std::string name;
   if (options.collisions) {
@@ -94,7 +78,7 @@ int drive(const DriveOptions& options) {
     clips.push_back(clip_of(recorded(place, file), name + in_world(place), options.from_s,
                             options.from_s + options.seconds));
   } else {
-    check_can_drive(options.planner, place.trained, place.config);
+    check_can_drive(options.planner, place);
     const std::uint64_t seed = options.seed.value_or(place.config.evaluation.seeds.front());
     const auto steps = static_cast<std::int64_t>(
         std::ceil((options.from_s + options.seconds) / place.config.simulation.step_s));

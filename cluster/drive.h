@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "cluster/evaluate.h"
+#include "cluster/evaluation_world.h"
 
 namespace corridor::cluster {
 

@@ -10,12 +10,12 @@
 #include "cluster/launch/plan.h"
 #include "cluster/results/evaluation_result.h"
 #include "cluster/results/results_tables.h"
-#include "cluster/train.h"
 #include "cluster/watch/line_tail.h"
 #include "cluster/watch/step_progress.h"
 #include "proto/base/failure.h"
 #include "proto/base/json.h"
 #include "proto/base/text.h"
+#include "proto/config/config_values.h"
 #include "proto/config/run_config.h"
 #include "proto/run/fingerprint.h"
 #include "proto/run/metrics.h"
@@ -72,15 +72,16 @@ std::vector<Evaluation> evaluations_of(const Experiment& experiment, const std::
   std::vector<Evaluation> evaluations;
   for (const Run& run : runs) {
     for (const EvaluationWorld& world : run.training->evaluate_in) {
-      const RunDirectory place = world_directory(RunDirectory::open(run.root), world);
-      const bool kinematic = load_run_config(place.config()).dynamics.world == "kinematic";
+      const EvaluationPlace place = evaluation_place(run.root, world);
       for (const std::string& planner : run.training->planners) {
         const PlannerPair& pair = planner_pair(planner);
         if (!pair.learned() && !run.is_first()) continue;
-        if (pair.world_drives() && !kinematic) continue;
+        if (!pair.drives_in(place.config.dynamics.world)) continue;
         for (const std::uint64_t seed : experiment.evaluation_seeds) {
-          evaluations.push_back(
-              {&run, world.name(""), place, {planner, seed, experiment.evaluation_steps}});
+          evaluations.push_back({&run,
+                                 world.name(""),
+                                 place.directory,
+                                 {planner, seed, experiment.evaluation_steps}});
         }
       }
     }
@@ -106,7 +107,7 @@ void claim(const fs::path& directory, const fs::path& file) {
 void check_same_settings(const Run& run) {
   for (const ChangedKey& key :
        changed_keys(config_at_start(RunDirectory::open(run.root)), run.config)) {
-    if (!decides_result(key.name)) continue;
+    if (!decides_result(key.heeds)) continue;
     throw Failure("{} was trained with {} = {}, where {} now says {}: move it away to train anew",
                   run.root.string(), key.name, key.before, run.training->scenario.string(),
                   key.now);

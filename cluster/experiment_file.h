@@ -10,7 +10,7 @@
 //   scenario = "../paper.toml"              # to train in; files are relative to this one
 //   settings = ["mop.risk_weight=0"]        # over the scenario; none unless given
 //   from = "other"                          # begins with the networks of that training, same seed
-//   evaluate_in = ["../paper.toml", "../paper.toml dynamics.world=webots"]    # settings over it
+//   evaluate_in = ["../paper.toml", "../paper.toml dynamics.world=rigid"]    # settings over it
 //   planners = ["hierarchical"]             # planners and training_seeds: for this one only
 #pragma once
 
@@ -19,7 +19,7 @@
 #include <string>
 #include <vector>
 
-#include "cluster/evaluate.h"
+#include "cluster/evaluation_world.h"
 
 namespace corridor::cluster {
 

@@ -8,6 +8,7 @@
 #include "cluster/launch/manifest.h"
 #include "cluster/launch/plan.h"
 #include "cluster/launch/run_lock.h"
+#include "cluster/new_run.h"
 #include "cluster/watch/display.h"
 #include "cluster/watch/line_tail.h"
 #include "cluster/watch/tensorboard.h"
@@ -16,6 +17,7 @@
 #include "proto/base/failure.h"
 #include "proto/base/json.h"
 #include "proto/base/text.h"
+#include "proto/config/config_values.h"
 #include "proto/config/run_config.h"
 #include "proto/run/checkpoints.h"
 #include "proto/run/fingerprint.h"
@@ -25,29 +27,9 @@
 #include "proto/settings/schedule.h"
 #include "proto/system/files.h"
 #include "proto/system/program.h"
-#include "scenarios/sumo_files.h"
 
 namespace corridor::cluster {
 namespace {
-
-// Removes the run directory again unless it is kept: a run that never began leaves nothing.
-class NewRun {
- public:
-  explicit NewRun(const std::filesystem::path& root) : directory_(RunDirectory::create(root)) {}
-  ~NewRun() {
-    std::error_code ignored;
-    if (!kept_) std::filesystem::remove_all(directory_.root(), ignored);
-  }
-  NewRun(const NewRun&) = delete;
-  NewRun& operator=(const NewRun&) = delete;
-
-  const RunDirectory& directory() const { return directory_; }
-  void keep() { kept_ = true; }
-
- private:
-  RunDirectory directory_;
-  bool kept_ = false;
-};
 
 // Seconds since 1970.
 double wall_time_s() {
@@ -213,7 +195,7 @@ RunConfig changed_config(const ResumeOptions& options, const RunDirectory& direc
   const RunConfig at_start = config_at_start(directory);
   const RunConfig config = load_run_config(directory.config(), options.settings);
   for (const ChangedKey& key : changed_keys(at_start, config)) {
-    if (!decides_result(key.name)) continue;
+    if (!decides_result(key.heeds)) continue;
     throw Failure(
         "{} = {}: the run began with {}, and its result depends on it; put that back, or "
         "train anew",
@@ -229,7 +211,7 @@ RunConfig changed_config(const ResumeOptions& options, const RunDirectory& direc
 std::optional<Networks> networks_to_begin_with(const std::filesystem::path& from,
                                                const RunConfig& config) {
   if (from.empty()) {
-    if (config.schedule.mop_commands == "random") return std::nullopt;
+    if (config.schedule.mop_commands == MopCommands::kRandom) return std::nullopt;
     throw Failure(
         "schedule.mop_commands = \"learned\": there is no learned BP yet; begin with the networks "
         "of a run, as in --from runs/paper");
@@ -240,21 +222,6 @@ std::optional<Networks> networks_to_begin_with(const std::filesystem::path& from
 }
 
 }  // namespace
-
-bool decides_result(std::string_view key) {
-  constexpr std::string_view kTables[] = {"evaluation."};
-  constexpr std::string_view kKeys[] = {"schedule.checkpoint_every_steps",
-                                        "schedule.checkpoints_kept",
-                                        "run.transport",
-                                        "run.host",
-                                        "run.replay_port",
-                                        "run.learner_port",
-                                        "run.peer_timeout_s",
-                                        "run.delay_ms_max"};
-  return std::none_of(std::begin(kTables), std::end(kTables),
-                      [&](std::string_view table) { return key.starts_with(table); }) &&
-         std::find(std::begin(kKeys), std::end(kKeys), key) == std::end(kKeys);
-}
 
 int train(const TrainOptions& options, const std::string& program) {
   std::vector<std::string> overrides;
@@ -268,12 +235,10 @@ int train(const TrainOptions& options, const std::string& program) {
   NewRun run(options.run);
   const RunDirectory& directory = run.directory();
   const RunLock lock(directory);
-  scenarios::write_sumo_files(config, directory.network().parent_path());
-  for (const auto& file : {directory.network(), directory.routes()}) sync_file(file);
   if (given) write_networks(directory, *given);
-  write_file(directory.config(), to_toml(config));
-  write_file(directory.manifest(),
-             describe_run(draw_run_id(), config, options.scenario).dump(2) + "\n");
+  const std::string text = to_toml(config);
+  const OrderedJson manifest = describe_run(draw_run_id(), config.run.seed, options.scenario, text);
+  run.fill(config, text, manifest.dump(2) + "\n");
   if (stop_requested()) return 128 + SIGINT;
   run.keep();
 

@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace corridor::cluster {
@@ -34,9 +33,5 @@ struct ResumeOptions {
 // and set aside, and the one before is used.
 int train(const TrainOptions& options, const std::string& program);
 int resume(const ResumeOptions& options, const std::string& program);
-
-// Whether a training's result depends on that key ("mop.gamma"): such keys may not change in the
-// middle of a run.
-bool decides_result(std::string_view key);
 
 }  // namespace corridor::cluster

@@ -25,14 +25,14 @@ namespace {
 using namespace corridor;
 
 // Into the log and beside config.toml: what the bits and the speed depend on.
-void record_libraries(const RunDirectory& directory, const std::string& device) {
+void record_libraries(const RunDirectory& directory, Device device) {
   const learner::Blas blas = learner::blas_in_use();
-  log_info("LibTorch {} on {}, BLAS {} {}", learner::libtorch_version(), device, blas.library,
-           blas.core);
+  log_info("LibTorch {} on {}, BLAS {} {}", learner::libtorch_version(), name_of(device),
+           blas.library, blas.core);
   const std::string warning = learner::warning_about(blas);
   if (!warning.empty()) log_warning(warning);
   const Json record = {{"libtorch", learner::libtorch_version()},
-                       {"device", device},
+                       {"device", name_of(device)},
                        {"blas", blas.library},
                        {"blas_core", blas.core},
                        {"blas_config", blas.config}};

@@ -7,7 +7,6 @@
 #include <cstdint>
 #include <memory>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "learner/td_loss.h"
@@ -49,6 +48,6 @@ class TdNetworks {
 std::unique_ptr<TdNetworks> cpu_networks(const NetworkShape& shape, const DqnSettings& dqn,
                                          const TdState& state);
 std::unique_ptr<TdNetworks> torch_networks(const NetworkShape& shape, const DqnSettings& dqn,
-                                           const std::string& device, const TdState& state);
+                                           Device device, const TdState& state);
 
 }  // namespace corridor::learner

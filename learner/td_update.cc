@@ -30,7 +30,7 @@ TdState initial_td_state(std::vector<float> parameters) {
   return {parameters, parameters, zeros, zeros, 0};
 }
 
-TdUpdate::TdUpdate(const NetworkShape& shape, const DqnSettings& dqn, const std::string& device,
+TdUpdate::TdUpdate(const NetworkShape& shape, const DqnSettings& dqn, Device device,
                    const TdState& state)
     : shape_(shape), dqn_(dqn), updates_(state.updates) {
   const std::size_t size = shape.parameters();
@@ -41,8 +41,8 @@ TdUpdate::TdUpdate(const NetworkShape& shape, const DqnSettings& dqn, const std:
   }
   for (std::size_t start = 0; start < state.online.size(); start += size) {
     const TdState part = part_of(state, start, size);
-    networks_.push_back(device == "cpu" ? cpu_networks(shape, dqn, part)
-                                        : torch_networks(shape, dqn, device, part));
+    networks_.push_back(device == Device::kCpu ? cpu_networks(shape, dqn, part)
+                                               : torch_networks(shape, dqn, device, part));
   }
 }
 

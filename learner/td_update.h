@@ -5,7 +5,6 @@
 
 #include <cstdint>
 #include <memory>
-#include <string>
 #include <vector>
 
 #include "learner/td_networks.h"
@@ -22,8 +21,7 @@ class TdUpdate {
   // `shape` of one network, `state` of all of them, one after the other. `dqn`: which networks and
   // target, Huber delta, Adam's epsilon, clipping, how often the target is copied.
   // Throws Failure when the device is not there (check_device).
-  TdUpdate(const NetworkShape& shape, const DqnSettings& dqn, const std::string& device,
-           const TdState& state);
+  TdUpdate(const NetworkShape& shape, const DqnSettings& dqn, Device device, const TdState& state);
 
   struct Result {
     double loss = 0.0;              // before the step, summed over the networks

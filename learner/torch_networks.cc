@@ -24,9 +24,13 @@ std::span<const float> values(const torch::Tensor& host) {
 
 class TorchNetworks : public TdNetworks {
  public:
-  TorchNetworks(const NetworkShape& shape, const DqnSettings& dqn, const std::string& device,
+  TorchNetworks(const NetworkShape& shape, const DqnSettings& dqn, Device device,
                 const TdState& state)
-      : shape_(shape), dqn_(dqn), device_(device), online_(shape, device), target_(shape, device) {
+      : shape_(shape),
+        dqn_(dqn),
+        device_(name_of(device)),
+        online_(shape, device),
+        target_(shape, device) {
     // Adam sees one parameter, the flat vector. It makes its state in its first step; with a
     // gradient of 0 that step moves nothing.
     torch::Tensor& flat = online_.parameter_tensor();
@@ -107,7 +111,7 @@ class TorchNetworks : public TdNetworks {
 }  // namespace
 
 std::unique_ptr<TdNetworks> torch_networks(const NetworkShape& shape, const DqnSettings& dqn,
-                                           const std::string& device, const TdState& state) {
+                                           Device device, const TdState& state) {
   return std::make_unique<TorchNetworks>(shape, dqn, device, state);
 }
 

@@ -8,11 +8,8 @@
 #include "proto/base/random.h"
 
 namespace corridor::learner {
-
-void check_device(const std::string& device) {
-  if (device == "cpu") return;
-  if (device != "cuda") throw Failure("run.device is '{}'; it must be 'cpu' or 'cuda'", device);
-  if (!torch::cuda::is_available()) {
+void check_device(Device device) {
+  if (device == Device::kCuda && !torch::cuda::is_available()) {
     throw Failure(
         "run.device is 'cuda', but LibTorch {} finds no CUDA device; set run.device = \"cpu\", or "
         "build with a CUDA LibTorch (cmake -DCMAKE_PREFIX_PATH=/opt/libtorch)",
@@ -54,9 +51,9 @@ struct QNetwork::Impl {
   }
 };
 
-QNetwork::QNetwork(const NetworkShape& shape, const std::string& device) {
+QNetwork::QNetwork(const NetworkShape& shape, Device device) {
   check_device(device);
-  const torch::Device where(device);
+  const torch::Device where(name_of(device));
   const auto size = static_cast<std::int64_t>(shape.parameters());
   impl_ = std::make_unique<Impl>(
       Impl{shape, where, torch::zeros({size}, torch::dtype(torch::kFloat32).device(where))});

@@ -6,9 +6,9 @@
 #include <cstdint>
 #include <memory>
 #include <span>
-#include <string>
 #include <vector>
 
+#include "proto/settings/choices.h"
 #include "proto/settings/transition.h"
 
 namespace at {
@@ -17,9 +17,9 @@ class Tensor;
 
 namespace corridor::learner {
 
-// Where LibTorch computes: "cpu" or "cuda" (config key run.device). Throws Failure when LibTorch
-// has no such device here.
-void check_device(const std::string& device);
+// Where LibTorch is to compute (config key run.device). Throws Failure when it has no such device
+// here.
+void check_device(Device device);
 
 // Keeps LibTorch to the calling thread; call it first in main.
 void use_one_torch_thread();
@@ -32,7 +32,7 @@ std::vector<float> initial_parameters(const NetworkShape& shape, std::uint64_t s
 class QNetwork {
  public:
   // All parameters 0. Throws Failure as check_device does.
-  QNetwork(const NetworkShape& shape, const std::string& device);
+  QNetwork(const NetworkShape& shape, Device device);
   ~QNetwork();
   QNetwork(const QNetwork&) = delete;
   QNetwork& operator=(const QNetwork&) = delete;

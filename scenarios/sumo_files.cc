@@ -141,10 +141,12 @@ void write_sumo_files(const RunConfig& config, const fs::path& directory,
   std::error_code error;
   fs::create_directories(directory, error);
   if (error) throw Failure("cannot create {}: {}", directory.string(), error.message());
-  write_file(directory / "road.nod.xml", nodes_xml(config.road));
-  write_file(directory / "road.edg.xml", edges_xml(config.road));
-  write_file(directory / "traffic.rou.xml", vehicle_types_xml(config.traffic, config.ego));
-  write_file(directory / "road.sumocfg", configuration_xml(config.simulation));
+  const std::pair<const char*, std::string> files[] = {
+      {"road.nod.xml", nodes_xml(config.road)},
+      {"road.edg.xml", edges_xml(config.road)},
+      {"traffic.rou.xml", vehicle_types_xml(config.traffic, config.ego)},
+      {"road.sumocfg", configuration_xml(config.simulation)}};
+  for (const auto& [name, text] : files) write_file(directory / name, text);
   run_netconvert(directory, netconvert_deadline);
 }
 

@@ -46,8 +46,8 @@ struct TyreModel {
   double shape = 1.0;
   double softness_cfm = 1e-5;  // of the contact
 };
-// highway.wbt of Webots.
-inline constexpr TyreModel kWebotsTyre{.friction = 8.0};
+// Rigid, as in highway.wbt of Webots.
+inline constexpr TyreModel kRigidTyre{.friction = 8.0};
 // p_ky1 and p_cy1 of CommonRoad's multibody model (Althoff et al. 2017, vehicle models), there with
 // a friction of 1.0489. Its stiffness does not depend on friction.
 inline constexpr TyreModel slip_tyre(double friction) { return {friction, 21.92, 1.3507}; }

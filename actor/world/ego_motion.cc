@@ -10,22 +10,23 @@
 namespace corridor::world {
 namespace {
 
-constexpr double kWebotsStep_s = 0.01;
+constexpr double kRigidStep_s = 0.01;
 constexpr double kSlipStep_s = 0.002;
 
 }  // namespace
 
 std::unique_ptr<EgoMotion> make_ego_motion(const DynamicsSettings& dynamics,
                                            const RoadSettings& road, const EgoSettings& ego) {
-  if (dynamics.world == "kinematic") return std::make_unique<KinematicMotion>(dynamics, road, ego);
-  const bool slips = dynamics.world == "slip";
-  CORRIDOR_CHECK(slips || dynamics.world == "webots", "{}", dynamics.world);
+  if (dynamics.world == WorldKind::kKinematic) {
+    return std::make_unique<KinematicMotion>(dynamics, road, ego);
+  }
+  const bool slips = dynamics.world == WorldKind::kSlip;
   const vehicle::CarModel car =
-      dynamics.car == "bmw_x5" ? vehicle::bmw_x5() : vehicle::toyota_prius();
+      dynamics.car == Car::kBmwX5 ? vehicle::bmw_x5() : vehicle::toyota_prius();
   const vehicle::TyreModel tyre =
-      slips ? vehicle::slip_tyre(dynamics.friction) : vehicle::kWebotsTyre;
+      slips ? vehicle::slip_tyre(dynamics.friction) : vehicle::kRigidTyre;
   return std::make_unique<DynamicMotion>(
-      std::make_unique<vehicle::OdeVehicle>(car, tyre, slips ? kSlipStep_s : kWebotsStep_s), car,
+      std::make_unique<vehicle::OdeVehicle>(car, tyre, slips ? kSlipStep_s : kRigidStep_s), car,
       tyre, dynamics, road, ego);
 }
 

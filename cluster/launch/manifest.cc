@@ -66,10 +66,10 @@ std::string draw_run_id() {
   return fmt::format("{:016x}{:016x}", random_64_bits(), random_64_bits());
 }
 
-OrderedJson describe_run(const std::string& run_id, const RunConfig& config,
-                         const std::filesystem::path& scenario) {
+OrderedJson describe_run(const std::string& run_id, std::uint64_t seed,
+                         const std::filesystem::path& scenario, const std::string& config_toml) {
   return {{"run_id", run_id},
-          {"seed", config.run.seed},
+          {"seed", seed},
           {"scenario", std::filesystem::absolute(scenario).string()},
           {"started", utc_now()},
           {"host", host_name()},
@@ -82,7 +82,7 @@ OrderedJson describe_run(const std::string& run_id, const RunConfig& config,
             {"libtorch", CORRIDOR_TORCH_VERSION},
             {"blas", blas_library()},
             {"compiler", CORRIDOR_COMPILER}}},
-          {"config", to_toml(config)}};
+          {"config", config_toml}};
 }
 
 RunConfig config_at_start(const RunDirectory& directory) {

@@ -1,6 +1,7 @@
 // manifest.json of a run: what made it.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 
@@ -16,8 +17,8 @@ std::string draw_run_id();
 // run_id, seed, scenario, started (UTC), host, cpu, cores, and the versions of corridor, its git
 // commit, SUMO, LibTorch, BLAS and compiler, and the settings (config, in TOML). What is not known
 // says "unknown".
-OrderedJson describe_run(const std::string& run_id, const RunConfig& config,
-                         const std::filesystem::path& scenario);
+OrderedJson describe_run(const std::string& run_id, std::uint64_t seed,
+                         const std::filesystem::path& scenario, const std::string& config_toml);
 
 // The name of the scenario's file, "paper". Throws Failure when the manifest does not say.
 std::string scenario_name(const RunDirectory& directory);

@@ -9,7 +9,7 @@
 namespace corridor::cluster {
 
 struct Clip {
-  std::string title;                      // "hierarchical, seed 1002, episode 3, webots"
+  std::string title;                      // "hierarchical, seed 1002, episode 3, rigid"
   EpisodeTrace trace;                     // of this stretch only
   double start_s = 0.0;                   // of the trace, after the episode's start
   std::vector<double> speed_changes_mps;  // of the MoP's actions

@@ -10,7 +10,7 @@
 #include "cluster/results/results_tables.h"
 #include "proto/base/format.h"
 #include "proto/base/text.h"
-#include "proto/config/run_config.h"
+#include "proto/config/config_values.h"
 #include "proto/settings/schedule.h"
 
 namespace corridor::cluster {

@@ -4,9 +4,9 @@
 
 #include "cluster/launch/manifest.h"
 #include "cluster/launch/plan.h"
-#include "cluster/train.h"
 #include "proto/base/failure.h"
 #include "proto/base/json.h"
+#include "proto/config/config_values.h"
 #include "proto/config/run_config.h"
 #include "proto/run/fingerprint.h"
 #include "proto/run/run_directory.h"
@@ -38,7 +38,7 @@ std::vector<std::pair<std::string, std::string>> made_with(const OrderedJson& ma
 // Or in what does not matter for the result.
 bool differ_in_seed_only(const RunConfig& a, const RunConfig& b) {
   return std::ranges::none_of(changed_keys(a, b), [](const ChangedKey& key) {
-    return key.name != "run.seed" && decides_result(key.name);
+    return key.name != "run.seed" && decides_result(key.heeds);
   });
 }
 

@@ -63,10 +63,11 @@ void check_clock(const RunConfig& config) {
   require(is_multiple(dynamics.actuation_delay_s, kControlPeriod_s),
           "dynamics.actuation_delay_s = {} is no multiple of {}", dynamics.actuation_delay_s,
           kControlPeriod_s);
-  require(dynamics.world == "kinematic" || is_multiple(simulation.substep_s(), kControlPeriod_s),
+  require(dynamics.world == WorldKind::kKinematic ||
+              is_multiple(simulation.substep_s(), kControlPeriod_s),
           "simulation.step_s = {} in simulation.substeps = {} is no multiple of {}, as "
           "dynamics.world = \"{}\" needs",
-          simulation.step_s, simulation.substeps, kControlPeriod_s, dynamics.world);
+          simulation.step_s, simulation.substeps, kControlPeriod_s, name_of(dynamics.world));
 }
 
 void check_traffic(const TrafficSettings& traffic) {

@@ -1,6 +1,7 @@
 #include "proto/config/run_config.h"
 
 #include <algorithm>
+#include <iterator>
 #include <set>
 #include <sstream>
 #include <string_view>
@@ -18,7 +19,8 @@ namespace corridor {
 namespace {
 
 namespace fs = std::filesystem;
-using config_keys::Count;
+using config_keys::kRetiredKeys;
+using config_keys::RetiredKey;
 
 // What a name or an address is made of: needs no escapes when written.
 constexpr const char* kWordCharacters =
@@ -26,76 +28,6 @@ constexpr const char* kWordCharacters =
 bool is_word(std::string_view text) {
   return !text.empty() && text.find_first_not_of(kWordCharacters) == std::string_view::npos;
 }
-
-// ---- Writing.
-
-class Writer {
- public:
-  void table(const char* name, const char* comment) {
-    text_ += fmt::format("{}# {}\n[{}]\n", text_.empty() ? "" : "\n", comment, name);
-  }
-  template <typename T>
-  void number(const char* key, T value, std::type_identity_t<T>, std::type_identity_t<T>,
-              const char* comment) {
-    line(key, toml_of(value), comment);
-  }
-  template <typename T>
-  void list(const char* key, const std::vector<T>& values, Count, std::type_identity_t<T>,
-            std::type_identity_t<T>, const char* comment) {
-    line(key, toml_of(values), comment);
-  }
-  void flag(const char* key, bool value, const char* comment) {
-    line(key, toml_of(value), comment);
-  }
-  void text(const char* key, const std::string& value, const char* comment) {
-    line(key, toml_of(value), comment);
-  }
-  void choice(const char* key, const std::string& value, const std::vector<const char*>&,
-              const char* comment) {
-    line(key, toml_of(value), comment);
-  }
-  const std::string& result() const { return text_; }
-
- private:
-  void line(const char* key, const std::string& value, std::string_view comment) {
-    const std::string assignment = fmt::format("{} = {}", key, value);
-    text_ +=
-        comment.empty() ? assignment + "\n" : fmt::format("{:<36}  # {}\n", assignment, comment);
-  }
-  std::string text_;
-};
-
-// Every key's name and value.
-class Lister {
- public:
-  void table(const char* name, const char*) { table_ = name; }
-  template <typename T, typename... Rest>
-  void number(const char* key, T value, const Rest&...) {
-    list_one(key, toml_of(value));
-  }
-  template <typename T, typename... Rest>
-  void list(const char* key, const std::vector<T>& values, const Rest&...) {
-    list_one(key, toml_of(values));
-  }
-  void flag(const char* key, bool value, const char*) { list_one(key, toml_of(value)); }
-  void text(const char* key, const std::string& value, const char*) {
-    list_one(key, toml_of(value));
-  }
-  void choice(const char* key, const std::string& value, const std::vector<const char*>&,
-              const char*) {
-    list_one(key, toml_of(value));
-  }
-  const std::vector<std::pair<std::string, std::string>>& result() const { return keys_; }
-
- private:
-  void list_one(const char* key, std::string value) {
-    keys_.emplace_back(fmt::format("{}.{}", table_, key), std::move(value));
-  }
-  const char* table_ = "";
-  std::vector<std::pair<std::string, std::string>> keys_;
-};
-
-// ---- Reading.
 
 constexpr const char* kOverride = "override";
 
@@ -146,12 +78,11 @@ std::string suggestion(const std::string& unknown, const std::vector<std::string
 }
 
 // In alphabetical order: the TOML library's is a hash's.
-std::optional<std::string> first_unknown(const toml::value& table,
-                                         const std::vector<std::string>& known) {
+std::set<std::string> unknown_in(const toml::value& table, const std::vector<std::string>& known) {
   std::set<std::string> names;
   for (const auto& [name, value] : table.as_table()) names.insert(name);
   for (const std::string& name : known) names.erase(name);
-  return names.empty() ? std::nullopt : std::optional(*names.begin());
+  return names;
 }
 
 // Sets what the document says, and leaves the rest. Throws Failure at the first fault.
@@ -159,7 +90,7 @@ class Reader {
  public:
   explicit Reader(const toml::value& document) : document_(document) {}
 
-  void table(const char* name, const char*) {
+  void table(const char* name, const char*, Heeds) {
     check_keys();
     tables_.push_back(name);
     keys_.clear();
@@ -170,32 +101,33 @@ class Reader {
     }
   }
   template <typename T>
-  void number(const char* key, T& member, std::type_identity_t<T> low, std::type_identity_t<T> high,
-              const char*) {
-    if (const toml::value* value = find(key)) member = in_range<T>(key, *value, *value, low, high);
+  void key(const ConfigKey& key, T& member, std::type_identity_t<T> low,
+           std::type_identity_t<T> high) {
+    const toml::value* value = find(key);
+    if (value) member = in_range<T>(key, *value, *value, low, high);
   }
   template <typename T>
-  void list(const char* key, std::vector<T>& member, Count count, std::type_identity_t<T> low,
-            std::type_identity_t<T> high, const char*) {
+  void key(const ConfigKey& key, std::vector<T>& member, ListSize size, std::type_identity_t<T> low,
+           std::type_identity_t<T> high) {
     const toml::value* value = find(key);
     if (!value) return;
     if (!value->is_array()) wrong(key, *value, "a list of numbers, as in [1, 2]");
     const auto& elements = value->as_array();
-    if (elements.size() < count.low || elements.size() > count.high) {
-      wrong(key, *value, fmt::format("a list of {} to {} numbers", count.low, count.high));
+    if (elements.size() < size.low || elements.size() > size.high) {
+      wrong(key, *value, fmt::format("a list of {} to {} numbers", size.low, size.high));
     }
     member.clear();
     for (const toml::value& element : elements) {
       member.push_back(in_range<T>(key, *value, element, low, high));
     }
   }
-  void flag(const char* key, bool& member, const char*) {
+  void key(const ConfigKey& key, bool& member) {
     const toml::value* value = find(key);
     if (!value) return;
     if (!value->is_boolean()) wrong(key, *value, "true or false");
     member = value->as_boolean();
   }
-  void text(const char* key, std::string& member, const char*) {
+  void key(const ConfigKey& key, std::string& member) {
     const toml::value* value = find(key);
     if (!value) return;
     if (!value->is_string() || !is_word(value->as_string().str)) {
@@ -203,41 +135,46 @@ class Reader {
     }
     member = value->as_string().str;
   }
-  void choice(const char* key, std::string& member, const std::vector<const char*>& choices,
-              const char*) {
+  template <typename E>
+  requires std::is_enum_v<E>
+  void key(const ConfigKey& key, E& member) {
     const toml::value* value = find(key);
     if (!value) return;
-    if (!value->is_string() ||
-        std::find(choices.begin(), choices.end(), value->as_string().str) == choices.end()) {
-      wrong(key, *value,
-            "one of " + toml_of(std::vector<std::string>(choices.begin(), choices.end())));
+    try {
+      member = parse_choice<E>(value->is_string() ? value->as_string().str : "");
+    } catch (const Failure& failure) {
+      refuse(key.name, *value, failure.what());
     }
-    member = value->as_string().str;
   }
 
   // After the last table: whether the document has anything else.
   void finish() {
     check_keys();
-    if (const auto unknown = first_unknown(document_, tables_)) {
-      throw Failure("{}: unknown table [{}]: {}", place_of(document_.at(*unknown)), *unknown,
-                    suggestion(*unknown, tables_));
+    for (const std::string& unknown : unknown_in(document_, tables_)) {
+      throw Failure("{}: unknown table [{}]: {}", place_of(document_.at(unknown)), unknown,
+                    suggestion(unknown, tables_));
     }
   }
 
  private:
-  const toml::value* find(const char* key) {
-    keys_.push_back(key);
-    return table_ && table_->contains(key) ? &table_->at(key) : nullptr;
+  const toml::value* find(const ConfigKey& key) {
+    keys_.push_back(key.name);
+    return table_ && table_->contains(key.name) ? &table_->at(key.name) : nullptr;
   }
 
-  [[noreturn]] void wrong(const char* key, const toml::value& value, const std::string& right) {
-    throw Failure("{}: {}.{} = {}: must be {}", place_of(value), tables_.back(), key, shown(value),
-                  right);
+  [[noreturn]] void refuse(std::string_view key, const toml::value& value,
+                           std::string_view why) const {
+    throw Failure("{}: {}.{} = {}: {}", place_of(value), tables_.back(), key, shown(value), why);
+  }
+  [[noreturn]] void wrong(const ConfigKey& key, const toml::value& value,
+                          const std::string& right) const {
+    refuse(key.name, value, "must be " + right);
   }
 
   // `element` is `value` or one of its list.
   template <typename T>
-  T in_range(const char* key, const toml::value& value, const toml::value& element, T low, T high) {
+  T in_range(const ConfigKey& key, const toml::value& value, const toml::value& element, T low,
+             T high) {
     constexpr bool kWhole = std::is_integral_v<T>;
     const std::string right =
         fmt::format("{}{} from {} to {}", value.is_array() ? "a list, each " : "",
@@ -260,9 +197,18 @@ class Reader {
 
   void check_keys() const {
     if (!table_) return;
-    if (const auto unknown = first_unknown(*table_, keys_)) {
-      throw Failure("{}: unknown key {}.{}: {}", place_of(table_->at(*unknown)), tables_.back(),
-                    *unknown, suggestion(*unknown, keys_));
+    for (const std::string& unknown : unknown_in(*table_, keys_)) {
+      const toml::value& value = table_->at(unknown);
+      const auto retired = std::ranges::find_if(kRetiredKeys, [&](const RetiredKey& key) {
+        return key.table == tables_.back() && key.name == unknown;
+      });
+      if (retired == std::end(kRetiredKeys)) {
+        throw Failure("{}: unknown key {}.{}: {}", place_of(value), tables_.back(), unknown,
+                      suggestion(unknown, keys_));
+      }
+      if (shown(value) != retired->always) {
+        refuse(unknown, value, fmt::format("there is no such key any more: {}", retired->advice));
+      }
     }
   }
 
@@ -366,10 +312,10 @@ void apply_override(toml::value& document, const std::string& text) {
   }
 }
 
-RunConfig config_from(toml::value document, const std::string& name,
-                      const std::vector<std::string>& overrides) {
+// `config` with what the document and then the overrides say.
+RunConfig changed(RunConfig config, toml::value document, const std::string& name,
+                  const std::vector<std::string>& overrides) {
   for (const std::string& text : overrides) apply_override(document, text);
-  RunConfig config;
   Reader reader(document);
   config_keys::describe(config, reader);
   reader.finish();
@@ -409,7 +355,7 @@ Json load_toml(const fs::path& file) {
 }
 
 RunConfig load_run_config(const fs::path& file, const std::vector<std::string>& overrides) {
-  return config_from(load_document(file, {}), file.string(), overrides);
+  return changed({}, load_document(file, {}), file.string(), overrides);
 }
 
 RunConfig parse_run_config(const std::string& text, const std::string& name,
@@ -418,27 +364,12 @@ RunConfig parse_run_config(const std::string& text, const std::string& name,
   if (document.contains("base")) {
     throw Failure("{}: base is for scenario files", place_of(document.at("base")));
   }
-  return config_from(std::move(document), name, overrides);
+  return changed({}, std::move(document), name, overrides);
 }
 
-std::string to_toml(const RunConfig& config) {
-  RunConfig copy = config;  // the description's visitors may write
-  Writer writer;
-  config_keys::describe(copy, writer);
-  return writer.result();
-}
-
-std::vector<ChangedKey> changed_keys(const RunConfig& before, const RunConfig& now) {
-  RunConfig copies[] = {before, now};  // the description's visitors may write
-  Lister lists[2];
-  for (int i = 0; i < 2; ++i) config_keys::describe(copies[i], lists[i]);
-  std::vector<ChangedKey> changed;
-  for (std::size_t i = 0; i < lists[0].result().size(); ++i) {
-    const auto& [name, value_before] = lists[0].result()[i];
-    const std::string& value_now = lists[1].result()[i].second;
-    if (value_before != value_now) changed.push_back({name, value_before, value_now});
-  }
-  return changed;
+RunConfig with_overrides(const RunConfig& config, const std::string& name,
+                         const std::vector<std::string>& overrides) {
+  return changed(config, toml::table(), name, overrides);
 }
 
 }  // namespace corridor

@@ -1,4 +1,4 @@
-// A scenario file (TOML) <-> RunConfig. Every key is known, typed and range-checked; a file may
+// A scenario file (TOML) -> RunConfig. Every key is known, typed and range-checked; a file may
 // name another with `base = "other.toml"` (relative to itself) and then says only what differs.
 #pragma once
 
@@ -23,20 +23,12 @@ RunConfig load_run_config(const std::filesystem::path& file,
 RunConfig parse_run_config(const std::string& text, const std::string& name,
                            const std::vector<std::string>& overrides = {});
 
+// `config` with overrides; throws likewise.
+RunConfig with_overrides(const RunConfig& config, const std::string& name,
+                         const std::vector<std::string>& overrides);
+
 // Any TOML file as JSON, for files that are no scenarios; dates and times are refused. Throws
 // Failure naming the file when it is missing or no TOML.
 Json load_toml(const std::filesystem::path& file);
-
-// The keys whose values differ, in the order of proto/settings/settings.h.
-struct ChangedKey {
-  std::string name;    // "mop.gamma"
-  std::string before;  // as TOML
-  std::string now;
-};
-std::vector<ChangedKey> changed_keys(const RunConfig& before, const RunConfig& now);
-
-// Every key with its value, in the order of proto/settings/settings.h, each with its comment;
-// parsing it again gives an equal config (doubles print shortest round-trip).
-std::string to_toml(const RunConfig& config);
 
 }  // namespace corridor

@@ -3,9 +3,11 @@
 
 #include <cstdint>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "proto/base/format.h"
+#include "proto/settings/choices.h"
 
 namespace corridor {
 
@@ -21,6 +23,10 @@ inline std::string toml_of(double value) {
 // Of text without quotes, backslashes and control characters.
 inline std::string toml_of(const std::string& value) { return '"' + value + '"'; }
 
+template <typename E>
+requires std::is_enum_v<E> std::string toml_of(E choice) {
+  return toml_of(std::string(name_of(choice)));
+}
 template <typename T>
 std::string toml_of(const std::vector<T>& values) {
   std::string text;

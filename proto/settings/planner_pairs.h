@@ -5,6 +5,8 @@
 
 #include <string_view>
 
+#include "proto/settings/choices.h"
+
 namespace corridor {
 
 enum class BpKind {
@@ -27,6 +29,10 @@ struct PlannerPair {
   bool shielded = false;  // the MoP's actions pass the safety shield (actor/driving/shield.h)
 
   bool world_drives() const { return bp == BpKind::kNone; }
+  // SUMO's driver has no dynamics of its own.
+  bool drives_in(WorldKind world) const {
+    return !world_drives() || world == WorldKind::kKinematic;
+  }
   bool learned() const { return bp == BpKind::kLearned || mop == MopKind::kLearned; }
 };
 

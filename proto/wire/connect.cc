@@ -19,7 +19,7 @@ ClientLimits limits_of(const RunSettings& settings) {
 }  // namespace
 
 Addresses addresses(const RunSettings& settings, const std::string& run_id) {
-  if (settings.transport == "tcp") {
+  if (settings.transport == Transport::kTcp) {
     return {fmt::format("tcp://{}:{}", settings.host, settings.replay_port),
             fmt::format("tcp://{}:{}", settings.host, settings.learner_port)};
   }

@@ -48,7 +48,7 @@ TimeAccount account;
 struct Case {
   const char* name;
   Phase phase;
-  const char* mop_commands;
+  MopCommands mop_commands;
 };
 
 class InEachPhase : public testing::TestWithParam<Case> {
@@ -146,14 +146,15 @@ TEST_P(InEachPhase, EveryRowIsFiniteWithAPriorityOfItsOwn) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Phases, InEachPhase,
-                         testing::Values(Case{"MoP", Phase::kMop, "random"},
-                                         Case{"MoPUnderTheLearnedBp", Phase::kMop, "learned"},
-                                         Case{"BP", Phase::kBp, "random"}),
+                         testing::Values(Case{"MoP", Phase::kMop, MopCommands::kRandom},
+                                         Case{"MoPUnderTheLearnedBp", Phase::kMop,
+                                              MopCommands::kLearned},
+                                         Case{"BP", Phase::kBp, MopCommands::kRandom}),
                          [](const auto& parameter) { return parameter.param.name; });
 
 TEST(PhaseRollout, TheMopIsTrainedUnderTheLearnedBpsCommandsWhereTheScenarioSaysSo) {
   RunConfig config = small_config();
-  config.schedule.mop_commands = "learned";
+  config.schedule.mop_commands = MopCommands::kLearned;
   FakeWorld world_a(config), world_b(config);
   PhaseRollout a(config, 0, world_a, account, 0, {});
   PhaseRollout b(config, 0, world_b, account, 0, {});

@@ -49,7 +49,7 @@ void Step(benchmark::State& state) {
   const TdState initial = initial_td_state(initial_parameters(shape, 1, Phase::kMop));
   DqnSettings dqn = paper().phase(static_cast<Phase>(state.range(0)));
   dqn.risk_weight = 0.0;
-  TdUpdate update(shape, dqn, "cpu", initial);
+  TdUpdate update(shape, dqn, Device::kCpu, initial);
   for (auto _ : state) benchmark::DoNotOptimize(update.update(batch, 1e-4));
 }
 
@@ -60,7 +60,7 @@ void LibTorchStep(benchmark::State& state) {
   const DqnSettings& dqn = paper().phase(static_cast<Phase>(state.range(0)));
   const Batch batch = random_batch(shape, static_cast<int>(state.range(1)));
   const TdState initial = initial_td_state(initial_parameters(shape, 1, Phase::kMop));
-  const auto networks = torch_networks(shape, dqn, "cpu", initial);
+  const auto networks = torch_networks(shape, dqn, Device::kCpu, initial);
   for (auto _ : state) {
     const auto q = networks->forward(batch.rows, static_cast<int>(batch.weights.size()));
     const RowLayout layout{shape.observations};

@@ -67,8 +67,8 @@ void drive(const char* name, const vehicle::TyreModel& tyre, double step_s,
 }  // namespace
 
 int main() {
-  drive("webots", vehicle::kWebotsTyre, 0.01);
+  drive("rigid", vehicle::kRigidTyre, 0.01);
   drive("slip 0.9", vehicle::slip_tyre(0.9), 0.002);
   drive("slip 0.3", vehicle::slip_tyre(0.3), 0.002);
-  drive("webots, two seconds a corridor", vehicle::kWebotsTyre, 0.01, 2.0);
+  drive("rigid, two seconds a corridor", vehicle::kRigidTyre, 0.01, 2.0);
 }

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "proto/base/failure.h"
-#include "proto/config/run_config.h"
+#include "proto/config/config_values.h"
 #include "proto/run/run_directory.h"
 #include "proto/system/files.h"
 #include "tests/support/temporary_directory.h"

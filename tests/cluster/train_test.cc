@@ -6,6 +6,7 @@
 #include "cluster/launch/run_lock.h"
 #include "proto/base/failure.h"
 #include "proto/base/json.h"
+#include "proto/config/config_values.h"
 #include "proto/config/run_config.h"
 #include "proto/run/checkpoints.h"
 #include "proto/run/run_directory.h"

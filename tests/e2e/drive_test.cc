@@ -32,7 +32,7 @@ class Drive : public testing::Test {
 };
 
 TEST_F(Drive, EvaluatesTheSameNetworksInEveryWorldBitForBit) {
-  for (const char* world : {"kinematic", "webots", "slip"}) {
+  for (const char* world : {"kinematic", "rigid", "slip"}) {
     const auto evaluate = [&] {
       const CommandResult result = run_command(
           {kCorridor, "evaluate", run_, "--scenario", kScenarios + "paper_substeps.toml", "--world",
@@ -55,7 +55,7 @@ TEST_F(Drive, EvaluatesTheSameNetworksInEveryWorldBitForBit) {
 }
 
 TEST_F(Drive, ShowsAnyEpisodeAndTheCollisionsOfAnEvaluation) {
-  const CommandResult fresh = drive({"--seed", "7", "--seconds", "6", "--world", "webots"});
+  const CommandResult fresh = drive({"--seed", "7", "--seconds", "6", "--world", "rigid"});
   ASSERT_EQ(fresh.status, 0) << fresh.output;
   for (const char* file : {"hierarchical_7_0.mp4", "hierarchical_7_0.png", "hierarchical_7_0.html"})
     EXPECT_GT(std::filesystem::file_size(out_ / file), 10'000u) << file;

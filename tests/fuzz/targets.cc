@@ -9,6 +9,7 @@
 #include "learner/learner_state.h"
 #include "proto/base/failure.h"
 #include "proto/base/json.h"
+#include "proto/config/config_values.h"
 #include "proto/config/run_config.h"
 #include "proto/run/metrics.h"
 #include "proto/run/tensor_file.h"

@@ -50,7 +50,7 @@ TEST_P(TwoWays, AgreeWithLibTorchsAutogradAndAdam) {
       TdState state = initial_td_state(initial_parameters(shape, 5, Phase::kMop));
       state.target = initial_parameters(shape, 6, Phase::kMop);
       const auto by_hand = cpu_networks(shape, dqn, state);
-      const auto by_torch = torch_networks(shape, dqn, "cpu", state);
+      const auto by_torch = torch_networks(shape, dqn, Device::kCpu, state);
       for (std::uint64_t i = 0; i < 4; ++i) {
         const std::vector<float> rows = numbers(batch * RowLayout{shape.observations}.stride(), i);
         const std::vector<float> q_gradient = numbers(batch * shape.actions, 100 + i);
@@ -90,7 +90,7 @@ TEST(TorchNetworks, TakeOverAStateAndChangeNothingByIt) {
   state.mean_gradient.assign(state.online.size(), 0.5F);
   state.mean_squared_gradient.assign(state.online.size(), 0.25F);
   state.updates = 12;
-  EXPECT_EQ(torch_networks(shape, {}, "cpu", state)->state(), state);
+  EXPECT_EQ(torch_networks(shape, {}, Device::kCpu, state)->state(), state);
   EXPECT_EQ(cpu_networks(shape, {}, state)->state(), state);
 }
 

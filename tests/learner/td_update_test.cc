@@ -188,7 +188,7 @@ TEST(TdUpdate, AgreesWithAHandComputation) {
         dqn.huber_delta = 0.7;
         dqn.gradient_norm_max = norm_max;
         dqn.target_copy_updates = 3;
-        TdUpdate update(kShape, dqn, "cpu", start(kShape, dqn));
+        TdUpdate update(kShape, dqn, Device::kCpu, start(kShape, dqn));
         const auto initial = initial_parameters(kShape, 5, Phase::kMop, 2);
         const auto half = initial.begin() + static_cast<std::ptrdiff_t>(kShape.parameters());
         HandTrainer reward(dqn, {initial.begin(), half});
@@ -223,15 +223,15 @@ TEST(TdUpdate, AgreesWithAHandComputation) {
 TEST(TdUpdate, AddsUpThePrioritiesOfBothNetworks) {
   const Batch batch = random_batch(0, 8);
   const DqnSettings one = with_risk_weight(0.0), both = with_risk_weight(1e-9);
-  const auto reward = TdUpdate(kShape, one, "cpu", start(kShape, one)).update(batch, 1e-3);
-  const auto sum = TdUpdate(kShape, both, "cpu", start(kShape, both)).update(batch, 1e-3);
+  const auto reward = TdUpdate(kShape, one, Device::kCpu, start(kShape, one)).update(batch, 1e-3);
+  const auto sum = TdUpdate(kShape, both, Device::kCpu, start(kShape, both)).update(batch, 1e-3);
   for (std::size_t i = 0; i < 8; ++i) EXPECT_GT(sum.priorities[i], reward.priorities[i]);
 }
 
 TEST(TdUpdate, CopiesTheTargetEverySoManyUpdates) {
   DqnSettings dqn;
   dqn.target_copy_updates = 2;
-  TdUpdate update(kShape, dqn, "cpu", start(kShape, dqn));
+  TdUpdate update(kShape, dqn, Device::kCpu, start(kShape, dqn));
   update.update(random_batch(0, 8), 1e-2);
   EXPECT_EQ(update.state().target, start(kShape, dqn).online);
   update.update(random_batch(1, 8), 1e-2);
@@ -245,11 +245,11 @@ TEST(TdUpdate, ContinuesAnotherObjectsStateBitForBit) {
     const NetworkShape shape{kObservations, {16, 16}, kActions, dueling};
     DqnSettings dqn;
     dqn.target_copy_updates = 7;
-    TdUpdate whole(shape, dqn, "cpu", start(shape, dqn));
-    TdUpdate first(shape, dqn, "cpu", start(shape, dqn));
+    TdUpdate whole(shape, dqn, Device::kCpu, start(shape, dqn));
+    TdUpdate first(shape, dqn, Device::kCpu, start(shape, dqn));
     for (std::uint64_t i = 0; i < 20; ++i) whole.update(random_batch(i, 32), 1e-3);
     for (std::uint64_t i = 0; i < 10; ++i) first.update(random_batch(i, 32), 1e-3);
-    TdUpdate second(shape, dqn, "cpu", first.state());
+    TdUpdate second(shape, dqn, Device::kCpu, first.state());
     EXPECT_EQ(second.state(), first.state());
     for (std::uint64_t i = 10; i < 20; ++i) second.update(random_batch(i, 32), 1e-3);
     EXPECT_EQ(second.state(), whole.state());
@@ -261,7 +261,7 @@ TEST(TdUpdate, ChangesNothingByBeingMade) {
   state.mean_gradient.assign(state.online.size(), 0.5f);
   state.mean_squared_gradient.assign(state.online.size(), 0.25f);
   state.updates = 12;
-  EXPECT_EQ(TdUpdate(kShape, {}, "cpu", state).state(), state);
+  EXPECT_EQ(TdUpdate(kShape, {}, Device::kCpu, state).state(), state);
 }
 
 TEST(TdUpdate, LearnsTheValuesOfAChain) {
@@ -296,9 +296,9 @@ TEST(TdUpdate, LearnsTheValuesOfAChain) {
     const NetworkShape shape{kStates, {32}, 2, dueling};
     DqnSettings dqn = with_risk_weight(0.0);
     dqn.target_copy_updates = 50;
-    TdUpdate update(shape, dqn, "cpu", start(shape, dqn));
+    TdUpdate update(shape, dqn, Device::kCpu, start(shape, dqn));
     for (int i = 0; i < 3000; ++i) update.update(batch, 3e-3);
-    QNetwork network(shape, "cpu");
+    QNetwork network(shape, Device::kCpu);
     network.set_parameters(update.parameters());
     const std::vector<float> q = network.forward(observations, kStates);
     for (int s = 0; s < kStates; ++s) {
@@ -309,7 +309,7 @@ TEST(TdUpdate, LearnsTheValuesOfAChain) {
 }
 
 TEST(TdUpdate, RefusesRowsOfAnotherLength) {
-  TdUpdate update(kShape, {}, "cpu", start(kShape, {}));
+  TdUpdate update(kShape, {}, Device::kCpu, start(kShape, {}));
   Batch batch = random_batch(0, 4);
   batch.rows.pop_back();
   EXPECT_THROW(update.update(batch, 1e-3), Failure);

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "proto/base/failure.h"
+#include "proto/config/config_values.h"
 #include "proto/config/run_config.h"
 #include "proto/run/run_directory.h"
 #include "proto/system/files.h"
@@ -199,7 +200,7 @@ TEST(Scenarios, TrainingOnDrivesWhereItBegan) {
   for (const Phase phase : {Phase::kMop, Phase::kBp}) {
     EXPECT_EQ(joint.parameters(phase), paper.parameters(phase));
   }
-  EXPECT_EQ(joint.schedule.mop_commands, "learned");
+  EXPECT_EQ(joint.schedule.mop_commands, MopCommands::kLearned);
 }
 
 TEST(Scenarios, TheSmokeTestDiffersInBudgetsOnly) {

@@ -5,7 +5,7 @@
 
 #include "cluster/launch/manifest.h"
 #include "proto/base/json.h"
-#include "proto/config/run_config.h"
+#include "proto/config/config_values.h"
 #include "proto/run/metrics.h"
 #include "proto/run/run_directory.h"
 #include "proto/system/files.h"
@@ -23,9 +23,10 @@ inline RunConfig fake_run_config(std::uint64_t seed) {
 inline RunDirectory make_fake_run(const std::filesystem::path& root, const RunConfig& config,
                                   double reward = 100.0) {
   const RunDirectory directory = RunDirectory::create(root);
-  write_file(directory.config(), to_toml(config));
+  const std::string text = to_toml(config);
+  write_file(directory.config(), text);
   write_file(directory.manifest(),
-             cluster::describe_run("secret", config, "scenarios/fake.toml").dump(2));
+             cluster::describe_run("secret", config.run.seed, "scenarios/fake.toml", text).dump(2));
   for (const char* name : {"actor-0", "actor-1"}) {
     MetricsWriter writer(directory.metrics(name));
     for (std::uint64_t line = 1; line <= 10; ++line) {

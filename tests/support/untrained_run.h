@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "proto/config/run_config.h"
+#include "proto/config/config_values.h"
 #include "proto/run/run_directory.h"
 #include "proto/system/files.h"
 

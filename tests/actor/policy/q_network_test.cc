@@ -35,7 +35,7 @@ TEST_P(AgainstLibTorch, AgreesToRounding) {
   const NetworkShape shape = GetParam();
   const auto parameters = random_floats(shape.parameters(), 1, 0.3);
   QNetwork network(shape, parameters);
-  learner::QNetwork reference(shape, "cpu");
+  learner::QNetwork reference(shape, Device::kCpu);
   reference.set_parameters(parameters);
   constexpr int kBatch = 64;
   const auto inputs = static_cast<std::size_t>(shape.observations);

@@ -19,7 +19,7 @@ struct Kind {
 };
 void PrintTo(const Kind& kind, std::ostream* out) { *out << kind.name; }
 
-const Kind kWebots{"webots", kWebotsTyre, 0.01};
+const Kind kRigid{"rigid", kRigidTyre, 0.01};
 const Kind kDry{"dry", slip_tyre(0.9), 0.002};
 const Kind kWet{"wet", slip_tyre(0.5), 0.002};
 const Kind kSnow{"snow", slip_tyre(0.3), 0.002};
@@ -28,7 +28,7 @@ class OdeVehicleOf : public testing::TestWithParam<Kind> {
  protected:
   OdeVehicle car_{bmw_x5(), GetParam().tyre, GetParam().step_s};
 };
-INSTANTIATE_TEST_SUITE_P(, OdeVehicleOf, testing::Values(kWebots, kDry, kWet, kSnow),
+INSTANTIATE_TEST_SUITE_P(, OdeVehicleOf, testing::Values(kRigid, kDry, kWet, kSnow),
                          [](const auto& kind) { return kind.param.name; });
 
 TEST_P(OdeVehicleOf, StandsStill) {
@@ -128,7 +128,7 @@ double peak_ratio(const Kind& kind, double speed_mps, double amplitude_rad) {
 }
 
 TEST(OdeVehicle, YawsAsTheSingleTrackModel) {
-  for (const Kind& kind : {kWebots, kDry}) {
+  for (const Kind& kind : {kRigid, kDry}) {
     for (const double speed_mps : {13.9, 25.0}) {
       EXPECT_NEAR(peak_ratio(kind, speed_mps, 0.01), 1.0, 0.02) << kind.name << " " << speed_mps;
     }
@@ -139,7 +139,7 @@ TEST(OdeVehicle, YawsAsTheSingleTrackModel) {
 TEST(OdeVehicle, SlidesOnSnow) { EXPECT_LT(peak_ratio(kSnow, 13.9, 0.06), 0.9); }
 
 TEST(OdeVehicle, ThePriusIsAnotherCar) {
-  OdeVehicle x5(bmw_x5(), kWebotsTyre, 0.01), prius(toyota_prius(), kWebotsTyre, 0.01);
+  OdeVehicle x5(bmw_x5(), kRigidTyre, 0.01), prius(toyota_prius(), kRigidTyre, 0.01);
   for (OdeVehicle* car : {&x5, &prius}) {
     car->place({.speed_mps = 5.0});
     car->set_cruising_speed(13.0);

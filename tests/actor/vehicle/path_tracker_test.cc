@@ -64,7 +64,7 @@ struct Tyre {
   double step_s;
 };
 const Tyre kTyres[] = {
-    {kWebotsTyre, 0.01}, {slip_tyre(0.9), 0.002}, {slip_tyre(0.5), 0.002}, {slip_tyre(0.3), 0.002}};
+    {kRigidTyre, 0.01}, {slip_tyre(0.9), 0.002}, {slip_tyre(0.5), 0.002}, {slip_tyre(0.3), 0.002}};
 
 TEST(PathTracker, KeepsAnEightSecondsLaneChangeWithinFiveCentimetres) {
   for (const Tyre& tyre : kTyres)

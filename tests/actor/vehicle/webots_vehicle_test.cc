@@ -45,7 +45,7 @@ TEST(WebotsVehicle, IsPlacedAnywhereAtSpeed) {
 TEST(WebotsVehicle, DrivesAsTheCarItIs) {
   webots::Car webots;
   WebotsVehicle car(webots);
-  OdeVehicle same(bmw_x5(), kWebotsTyre, 0.01);
+  OdeVehicle same(bmw_x5(), kRigidTyre, 0.01);
   for (Vehicle* vehicle : {static_cast<Vehicle*>(&car), static_cast<Vehicle*>(&same)}) {
     vehicle->place(kStart);
     vehicle->set_cruising_speed(kStart.speed_mps);
@@ -66,7 +66,7 @@ TEST(WebotsVehicle, DrivesAsTheCarItIs) {
 TEST(WebotsVehicle, IsKeptOnItsPathByTheTracker) {
   webots::Car webots;
   WebotsVehicle car(webots);
-  const PathTracker tracker(bmw_x5(), kWebotsTyre, 0.05);
+  const PathTracker tracker(bmw_x5(), kRigidTyre, 0.05);
   car.place({.speed_mps = 13.9});
   for (int i = 0; i < 200; ++i) {
     car.set_steering_angle(tracker.steering_rad(car.state(), {.y_m = 1.0}));

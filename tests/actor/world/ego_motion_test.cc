@@ -68,11 +68,11 @@ class Drive {
 };
 
 std::vector<DynamicsSettings> dynamic_worlds() {
-  return {{.world = "webots"},
-          {.world = "slip", .friction = 0.9},
-          {.world = "slip", .friction = 0.5},
-          {.world = "slip", .friction = 0.3},
-          {.world = "slip", .car = "toyota_prius"}};
+  return {{.world = WorldKind::kRigid},
+          {.world = WorldKind::kSlip, .friction = 0.9},
+          {.world = WorldKind::kSlip, .friction = 0.5},
+          {.world = WorldKind::kSlip, .friction = 0.3},
+          {.world = WorldKind::kSlip, .car = Car::kToyotaPrius}};
 }
 
 TEST(EgoMotion, AKinematicEgoIsWhereItShouldBe) {
@@ -92,10 +92,12 @@ TEST(EgoMotion, ACarWithDynamicsKeepsToTheLaneChangesThatPlannersAskFor) {
       // The front bumper's middle swings out by the yaw.
       worst_m = std::max(worst_m, std::abs(drive.egos[i].d_m - drive.references[i].d_m));
     }
-    EXPECT_LT(worst_m, 0.35) << world.world << " " << world.friction;
-    EXPECT_NEAR(drive.egos.back().d_m, 8.0, 0.01) << world.world << " " << world.friction;
-    EXPECT_NEAR(drive.egos.back().speed_mps, 12.0, 0.05) << world.world << " " << world.friction;
-    EXPECT_NEAR(drive.egos.back().yaw_rad, 0.0, 1e-3) << world.world << " " << world.friction;
+    EXPECT_LT(worst_m, 0.35) << name_of(world.world) << " " << world.friction;
+    EXPECT_NEAR(drive.egos.back().d_m, 8.0, 0.01) << name_of(world.world) << " " << world.friction;
+    EXPECT_NEAR(drive.egos.back().speed_mps, 12.0, 0.05)
+        << name_of(world.world) << " " << world.friction;
+    EXPECT_NEAR(drive.egos.back().yaw_rad, 0.0, 1e-3)
+        << name_of(world.world) << " " << world.friction;
   }
 }
 
@@ -110,8 +112,9 @@ TEST(EgoMotion, ACarSwingsOutLittleAtAnySpeed) {
         furthest_m = std::max(furthest_m, ego.d_m);
         yaw_rad = std::max(yaw_rad, std::abs(ego.yaw_rad));
       }
-      EXPECT_LT(furthest_m, kLaneMiddle_m + 0.64 + 0.16) << world.world << " " << speed_mps;
-      EXPECT_LT(yaw_rad, 0.12) << world.world << " " << speed_mps;
+      EXPECT_LT(furthest_m, kLaneMiddle_m + 0.64 + 0.16)
+          << name_of(world.world) << " " << speed_mps;
+      EXPECT_LT(yaw_rad, 0.12) << name_of(world.world) << " " << speed_mps;
       drive.to({kMiddleCorridor + 1, speed_mps}, static_cast<int>(100 / speed_mps));
       EXPECT_NEAR(drive.egos.back().d_m, kLaneMiddle_m + 0.64, 0.05) << speed_mps;
     }
@@ -122,13 +125,16 @@ TEST(EgoMotion, ACarWithDynamicsBrakesToAStandAndStartsAgain) {
   for (const DynamicsSettings& world : dynamic_worlds()) {
     Drive drive(config_of(world), cruising(13.0));
     drive.to({kMiddleCorridor, 0.0}, 60);
-    EXPECT_NEAR(drive.egos.back().speed_mps, 0.0, 0.02) << world.world << " " << world.friction;
+    EXPECT_NEAR(drive.egos.back().speed_mps, 0.0, 0.02)
+        << name_of(world.world) << " " << world.friction;
     const double stand_m = drive.egos.back().s_m;
     drive.to({kMiddleCorridor, 0.0}, 50);
-    EXPECT_NEAR(drive.egos.back().s_m, stand_m, 0.1) << world.world << " " << world.friction;
+    EXPECT_NEAR(drive.egos.back().s_m, stand_m, 0.1)
+        << name_of(world.world) << " " << world.friction;
     drive.to({kMiddleCorridor, 8.0}, 60);
-    EXPECT_NEAR(drive.egos.back().speed_mps, 8.0, 0.1) << world.world << " " << world.friction;
-    EXPECT_NEAR(drive.egos.back().d_m, kLaneMiddle_m, 0.02) << world.world;
+    EXPECT_NEAR(drive.egos.back().speed_mps, 8.0, 0.1)
+        << name_of(world.world) << " " << world.friction;
+    EXPECT_NEAR(drive.egos.back().d_m, kLaneMiddle_m, 0.02) << name_of(world.world);
   }
 }
 
@@ -142,12 +148,12 @@ TEST(EgoMotion, EqualDrivesAreEqualBitForBitWhateverWasDrivenBefore) {
     first.change_lane(12.0);
     Drive second(config_of(world), cruising(12.0));
     second.change_lane(12.0);
-    EXPECT_EQ(first.egos, second.egos) << world.world;
+    EXPECT_EQ(first.egos, second.egos) << name_of(world.world);
   }
 }
 
 TEST(EgoMotion, TrajectoriesContinueOneAnotherWhenTheTargetChanges) {
-  RunConfig config = config_of({.world = "webots"});
+  RunConfig config = config_of({.world = WorldKind::kRigid});
   Drive drive(config, cruising(12.0));
   // There, back again, and there, before it has arrived.
   for (const int corridor : {8, 9, 9, 8, 7, 8, 9, 10, 10, 9}) drive.to({corridor, 12.0}, 2);
@@ -181,7 +187,8 @@ TEST(EgoMotion, MeasuresWithErrorsOfTheSizeSet) {
 
 TEST(EgoMotion, ADelayMakesTheCarLag) {
   const auto after_a_second = [](double delay_s) {
-    Drive drive(config_of({.world = "webots", .actuation_delay_s = delay_s}), cruising(12.0));
+    Drive drive(config_of({.world = WorldKind::kRigid, .actuation_delay_s = delay_s}),
+                cruising(12.0));
     drive.to({kMiddleCorridor + 1, 12.0}, 3);
     return drive.egos.back().d_m;
   };

@@ -286,13 +286,13 @@ TEST_F(SumoWorldTest, StopsAStepWhereTheEgoCollides) {
 
 TEST_F(SumoWorldTest, DrivesACarWithDynamicsBitForBitAfterAnyOtherEpisodes) {
   config_.simulation.substeps = 5;
-  for (const char* kind : {"webots", "slip"}) {
+  for (const WorldKind kind : {WorldKind::kRigid, WorldKind::kSlip}) {
     config_.dynamics = {.world = kind, .position_noise_m = 0.1, .ghost = true};
     SumoWorld world = make();
     const std::uint64_t hash = drive(world, 21, EgoDriver::kPlanner, 60);
     drive(world, 22, EgoDriver::kPlanner, 45);
     drive(world, 23, EgoDriver::kWorld, 20);
-    EXPECT_EQ(drive(world, 21, EgoDriver::kPlanner, 60), hash) << kind;
+    EXPECT_EQ(drive(world, 21, EgoDriver::kPlanner, 60), hash) << name_of(kind);
   }
 }
 

@@ -18,13 +18,12 @@ TEST(RunId, IsThirtyTwoHexDigitsAndNeverTheSame) {
 }
 
 TEST(RunManifestFile, SaysWhatMadeTheRunAndIsReadByTheOtherProcesses) {
-  RunConfig config;
-  config.run.seed = 42;
   const std::string id = draw_run_id();
-  const auto manifest = describe_run(id, config, "scenarios/paper.toml");
+  const auto manifest = describe_run(id, 42, "scenarios/paper.toml", "# settings");
   EXPECT_EQ(manifest.at("seed"), 42);
   EXPECT_TRUE(manifest.at("scenario").get<std::string>().ends_with("/scenarios/paper.toml"));
   EXPECT_GE(manifest.at("cores"), 1);
+  EXPECT_EQ(manifest.at("config"), "# settings");
   for (const char* version : {"corridor", "git_commit", "sumo", "libtorch", "blas", "compiler"}) {
     EXPECT_FALSE(manifest.at("versions").at(version).get<std::string>().empty()) << version;
   }

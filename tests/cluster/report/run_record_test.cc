@@ -80,7 +80,7 @@ TEST_F(Records, OfWhatIsNoRunOrDamagedFailWithItsName) {
 TEST_F(Records, OfOneTrainingAreAGroupOrderedBySeed) {
   RunConfig other = fake_run_config(1), elsewhere = fake_run_config(3);
   other.dqn[0].gamma = 0.5;
-  elsewhere.run.transport = "tcp";
+  elsewhere.run.transport = Transport::kTcp;
   elsewhere.evaluation.steps = 5;
   const auto groups = grouped_runs({record("a", fake_run_config(2)), record("b", other),
                                     record("c", fake_run_config(1)), record("d", elsewhere)});

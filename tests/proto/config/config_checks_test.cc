@@ -33,7 +33,7 @@ const std::vector<Contradiction>& contradictions() {
       {[](RunConfig& c) { c.simulation.step_s = 1.0, c.simulation.substeps = 3; },
        "simulation.step_s = 1 in simulation.substeps = 3 is no whole number of milliseconds"},
       {[](RunConfig& c) {
-         c.simulation.step_s = 1.0, c.simulation.substeps = 8, c.dynamics.world = "slip";
+         c.simulation.step_s = 1.0, c.simulation.substeps = 8, c.dynamics.world = WorldKind::kSlip;
        },
        "simulation.step_s = 1 in simulation.substeps = 8 is no multiple of 0.05"},
       {[](RunConfig& c) { c.dynamics.actuation_delay_s = 0.12; },

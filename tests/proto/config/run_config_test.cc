@@ -5,6 +5,7 @@
 
 #include <fstream>
 
+#include "proto/config/config_values.h"
 #include "tests/support/failure_of.h"
 #include "tests/support/temporary_directory.h"
 
@@ -57,7 +58,7 @@ TEST(RunConfig, KeysOfEveryTypeAreRead) {
   EXPECT_FALSE(config.phase(Phase::kBp).dueling);
   EXPECT_EQ(config.phase(Phase::kMop).steps, 5'000'000'000);
   EXPECT_EQ(config.evaluation.seeds, (std::vector<std::uint64_t>{9223372036854775806ULL, 0}));
-  EXPECT_EQ(config.run.device, "cuda");
+  EXPECT_EQ(config.run.device, Device::kCuda);
   EXPECT_EQ(config.run.host, "node-1.example.org");
 }
 
@@ -120,8 +121,9 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"mop.hidden=[1,2,3,4,5,6,7,8,9]", "1 to 8 numbers"},
         Bad{"planner.speed_changes_mps=[0, nan]", "each a number"},
         Bad{"evaluation.seeds=[]", "1 to 1000 numbers"},
-        Bad{"run.device=gpu", "[\"cpu\", \"cuda\"]"}, Bad{"run.device=1", "[\"cpu\", \"cuda\"]"},
-        Bad{"run.transport=udp", "[\"ipc\", \"tcp\"]"},
+        Bad{"run.device=gpu", "must be one of cpu, cuda"},
+        Bad{"run.device=1", "must be one of cpu, cuda"},
+        Bad{"run.transport=udp", "must be one of ipc, tcp"},
         Bad{"run.host=\"\"", "a name or an address"},
         Bad{"run.host=\"a b\"", "a name or an address"}, Bad{"run.replay_port=65536", "1 to 65535"},
         Bad{"run.peer_timeout_s=0", "number from"},
@@ -141,6 +143,19 @@ TEST(RunConfig, ALongListOfSpeedChangesWouldNotFitAByte) {
       28U);
   EXPECT_THAT(fault_in("", {"planner.speed_changes_mps=[" + list + "15.5]"}),
               HasSubstr("a list of 1 to 28 numbers"));
+}
+
+TEST(RunConfig, AWorldIsRefusedByTheNameThatItHadAndNamedAsItIsCalledNow) {
+  EXPECT_EQ(fault_in("[dynamics]\nworld = \"webots\""),
+            "test.toml:2: dynamics.world = \"webots\": it is called \"rigid\" now");
+}
+
+TEST(RunConfig, OverridesChangeAConfigurationAndItIsCheckedAgain) {
+  const RunConfig config = with_overrides(parse("[road]\nlanes = 3"), "x", {"run.actors=7"});
+  EXPECT_EQ(config.road.lanes, 3);
+  EXPECT_EQ(config.run.actors, 7);
+  EXPECT_THAT(failure_of([&] { with_overrides(config, "x", {"road.lanes=4"}); }),
+              HasSubstr("x: bp_reward.thresholds_mps has 3 values"));
 }
 
 TEST(RunConfig, UnknownKeysAreErrorsAndTheNearestIsSuggested) {
@@ -173,9 +188,9 @@ TEST(RunConfig, OverridesApplyInOrderAndTakeBareWords) {
       parse("[run]\nactors = 5", {"run.actors=6", "run.actors=7", "run.transport=tcp",
                                   "run.host=10.0.0.1", "mop.hidden=[8, 8]", "run.device=\"cuda\""});
   EXPECT_EQ(config.run.actors, 7);
-  EXPECT_EQ(config.run.transport, "tcp");
+  EXPECT_EQ(config.run.transport, Transport::kTcp);
   EXPECT_EQ(config.run.host, "10.0.0.1");
-  EXPECT_EQ(config.run.device, "cuda");
+  EXPECT_EQ(config.run.device, Device::kCuda);
   EXPECT_EQ(config.phase(Phase::kMop).hidden, (std::vector<int>{8, 8}));
 }
 

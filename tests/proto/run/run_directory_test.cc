@@ -137,7 +137,7 @@ TEST_F(Runs, TheManifestsRunIdIsChecked) {
 
 TEST(Addresses, OfTcpAreTheConfiguredPorts) {
   RunSettings settings;
-  settings.transport = "tcp";
+  settings.transport = Transport::kTcp;
   settings.host = "node";
   const Addresses where = addresses(settings, std::string(32, 'a'));
   EXPECT_EQ(where.replay, "tcp://node:5701");

@@ -19,7 +19,7 @@ void Field::setSFVec3f(const double values[3]) { std::copy_n(values, 3, values_)
 void Field::setSFRotation(const double values[4]) { std::copy_n(values, 4, values_); }
 
 Node::Node(double time_step_s)
-    : car_(corridor::vehicle::bmw_x5(), corridor::vehicle::kWebotsTyre, time_step_s) {
+    : car_(corridor::vehicle::bmw_x5(), corridor::vehicle::kRigidTyre, time_step_s) {
   translation_.setSFVec3f(kTranslation);
   rotation_.setSFRotation(kRotation);
   resetPhysics();

@@ -1,0 +1,126 @@
+#include "cluster/evaluation_world.h"
+
+#include <algorithm>
+#include <optional>
+
+#include "cluster/launch/manifest.h"
+#include "cluster/new_run.h"
+#include "proto/base/failure.h"
+#include "proto/config/config_values.h"
+#include "proto/config/run_config.h"
+#include "proto/run/fingerprint.h"
+#include "proto/settings/planner_pairs.h"
+#include "proto/settings/schedule.h"
+#include "proto/system/files.h"
+#include "scenarios/sumo_files.h"
+
+namespace corridor::cluster {
+namespace {
+
+// The settings of the world by that name. A setting that would be ignored there is refused.
+RunConfig config_in(const RunConfig& trained, const EvaluationWorld& world,
+                    const std::string& name) {
+  const RunConfig scenario = world.scenario.empty()
+                                 ? with_overrides(trained, name, world.settings)
+                                 : load_run_config(world.scenario, world.settings);
+  const RunConfig config = in_world(trained, scenario, name);
+  for (const ChangedKey& key : changed_keys(config, scenario)) {
+    if (std::ranges::none_of(world.settings, [&](const std::string& setting) {
+          return setting.starts_with(key.name + "=");
+        })) {
+      continue;
+    }
+    throw Failure(
+        "{} belongs to the training, as which its planners drive everywhere: train a run with it "
+        "(an evaluation may set {})",
+        key.name, keys_where(set_by_world));
+  }
+  return config;
+}
+
+RunDirectory world_directory(const RunDirectory& run, const RunConfig& config,
+                             const std::string& name) {
+  const std::filesystem::path root = RunDirectory::scenarios(run.root()) / name;
+  if (std::filesystem::exists(root / "manifest.json")) {
+    RunDirectory directory = RunDirectory::open(root);
+    if (changed_keys(load_run_config(directory.config()), config).empty()) return directory;
+    throw Failure("{} holds what was driven with other settings than {}'s: move it away",
+                  root.string(), name);
+  }
+  // Somebody was stopped before it was complete.
+  on_disk("remove", root, [&] { std::filesystem::remove_all(root); });
+  on_disk("create", root, [&] { std::filesystem::create_directories(root.parent_path()); });
+  NewRun made(root);
+  made.fill(config, to_toml(config), read_file(run.manifest()));
+  made.keep();
+  return made.directory();
+}
+
+}  // namespace
+
+std::string EvaluationWorld::name(const std::string& own) const {
+  std::string text = scenario.empty() ? own : scenario.stem().string();
+  for (const std::string& setting : settings) {
+    text += fmt::format("+{}", setting.substr(setting.find('.') + 1));
+  }
+  std::ranges::replace_if(
+      text, [](char c) { return c == '/' || c == ',' || c == '"'; }, '_');
+  return text;
+}
+
+EvaluationPlace evaluation_place(const std::filesystem::path& run, const EvaluationWorld& world) {
+  const RunDirectory trained = RunDirectory::open(run);
+  EvaluationPlace place{trained, trained, load_run_config(trained.config())};
+  if (!world.is_own()) {
+    const std::string name = world.name(world.scenario.empty() ? scenario_name(trained) : "");
+    const int lanes = place.config.road.lanes;
+    place.config = config_in(place.config, world, name);
+    if (place.config.road.lanes != lanes) {
+      throw Failure("{} has {} lanes, and the networks of {} were trained on {}", name,
+                    place.config.road.lanes, run.string(), lanes);
+    }
+    place.directory = world_directory(trained, place.config, name);
+  }
+  // An exported run has none.
+  if (!std::filesystem::exists(place.directory.network())) {
+    scenarios::write_sumo_files(place.config, place.directory.network().parent_path());
+  }
+  return place;
+}
+
+void check_can_drive(const std::string& planner, const EvaluationPlace& place) {
+  const PlannerPair& pair = planner_pair(planner);
+  const WorldKind world = place.config.dynamics.world;
+  if (!pair.drives_in(world)) {
+    throw Failure(
+        "planner '{}' drives without dynamics of its own: choose others for dynamics.world = "
+        "\"{}\"",
+        planner, name_of(world));
+  }
+  if (!pair.learned()) return;
+  if (std::filesystem::exists(place.trained.networks())) return;
+  const std::optional<Checkpoint> checkpoint = newest_checkpoint(place.trained);
+  if (!checkpoint) {
+    throw Failure(
+        "planner '{}' drives with learned weights, and {} has no checkpoint yet: wait, "
+        "or choose --planners rules,sumo",
+        planner, place.trained.root().string());
+  }
+  const std::uint64_t bp_begins = Schedule(place.config).first_round(Phase::kBp);
+  if (pair.bp == BpKind::kLearned && checkpoint->rounds_done <= bp_begins) {
+    throw Failure(
+        "planner '{}' drives with the learned BP, and {} has trained the MoP only, for "
+        "{} rounds: wait, or choose --planners rules,rules+mop,sumo",
+        planner, place.trained.root().string(), checkpoint->rounds_done);
+  }
+}
+
+std::filesystem::path find_episode(const RunDirectory& directory, const std::string& episode) {
+  if (std::filesystem::is_regular_file(episode)) return episode;
+  const std::filesystem::path file = directory.episodes() / (episode + ".json");
+  if (std::filesystem::is_regular_file(file)) return file;
+  throw Failure("there is no episode '{}': give a file, or a name as in {}", episode,
+                directory.episodes().string());
+}
+
+}  // namespace corridor::cluster
