@@ -56,7 +56,7 @@ int run(const std::string& root) {
   limits.peer_timeout = Duration(static_cast<std::int64_t>(config.run.peer_timeout_s * 1000.0));
 
   learner::LearnerState state = learner::load_state(config, directory);
-  MetricsWriter metrics(directory.metrics("learner"));
+  MetricsWriter metrics(directory.metrics(kLearnerName));
   Server server(where.learner, run_id);
   learner::Publisher publisher(server, static_cast<std::size_t>(config.run.actors));
   Client client(where.replay, "replay server", identity, limits);

@@ -29,12 +29,15 @@ TEST(TimeAccount, EveryMomentBelongsToTheNextCharge) {
   work();
   account.charge(TimePart::kSimulate);
   const auto values = take(account);
-  EXPECT_GE(values.at("time/wall_s"), 0.015);
-  EXPECT_GE(values.at("time/simulate") * values.at("time/wall_s"), 0.010 * 0.999);
-  EXPECT_GE(values.at("time/infer") * values.at("time/wall_s"), 0.005 * 0.999);
-  EXPECT_NEAR(values.at("time/simulate") + values.at("time/infer"), 1.0, 0.05);
-  EXPECT_GT(values.at("time/cpu_s"), 0.0);
-  EXPECT_GE(values.at("time/cpu_of_io_s"), 0.0);
+  EXPECT_GE(values.at(kWallTimeMetric), 0.015);
+  EXPECT_GE(values.at(time_metric(TimePart::kSimulate)) * values.at(kWallTimeMetric),
+            0.010 * 0.999);
+  EXPECT_GE(values.at(time_metric(TimePart::kInfer)) * values.at(kWallTimeMetric), 0.005 * 0.999);
+  EXPECT_NEAR(
+      values.at(time_metric(TimePart::kSimulate)) + values.at(time_metric(TimePart::kInfer)), 1.0,
+      0.05);
+  EXPECT_GT(values.at(kCpuTimeMetric), 0.0);
+  EXPECT_GE(values.at(kIoCpuTimeMetric), 0.0);
 }
 
 TEST(TimeAccount, TakingBeginsAnewAndKeepsTheNames) {
@@ -45,9 +48,9 @@ TEST(TimeAccount, TakingBeginsAnewAndKeepsTheNames) {
   work();
   account.charge(TimePart::kPublish);
   const auto values = take(account);
-  EXPECT_EQ(values.at("time/update"), 0.0);
-  EXPECT_GT(values.at("time/publish"), 0.5);
-  EXPECT_FALSE(values.contains("time/sample"));
+  EXPECT_EQ(values.at(time_metric(TimePart::kUpdate)), 0.0);
+  EXPECT_GT(values.at(time_metric(TimePart::kPublish)), 0.5);
+  EXPECT_FALSE(values.contains(time_metric(TimePart::kSample)));
 }
 
 TEST(TimeAccount, PartsHaveNamesOfTheirOwn) {
