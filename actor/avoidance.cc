@@ -14,7 +14,6 @@ namespace corridor::actor {
 namespace {
 
 using driving::Collision;
-using driving::CollisionKind;
 using driving::Command;
 using driving::Ego;
 using driving::Scene;

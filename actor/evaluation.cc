@@ -18,9 +18,8 @@ Json summary_json(const EpisodeSummary& summary, std::uint64_t episode) {
           {"bp_reward", summary.bp_reward},
           {"mop_reward", summary.mop_reward},
           {"collisions", summary.collision ? 1 : 0},
-          {"collision_kind", summary.collision
-                                 ? Json(driving::collision_kind_name(summary.collision->kind))
-                                 : Json(nullptr)},
+          {"collision_kind",
+           summary.collision ? Json(name_of(summary.collision->kind)) : Json(nullptr)},
           {"lane_changes", summary.lane_changes},
           {"hard_brakes", summary.hard_brakes},
           {"bypasses", summary.bypasses},
@@ -32,9 +31,7 @@ Json totals_json(const RunConfig& config, const EvaluationTask& task, const Json
   std::int64_t steps = 0, collisions = 0, lane_changes = 0, bypasses = 0;
   double bp_reward = 0.0, distance_m = 0.0;
   Json by_kind = Json::object();
-  for (int kind = 0; kind < driving::kCollisionKinds; ++kind) {
-    by_kind[driving::collision_kind_name(static_cast<driving::CollisionKind>(kind))] = 0;
-  }
+  for (const char* kind : kCollisionKinds) by_kind[kind] = 0;
   for (const Json& episode : per_episode) {
     steps += episode["steps"].get<std::int64_t>();
     collisions += episode["collisions"].get<std::int64_t>();

@@ -43,7 +43,7 @@ Json collision_json(const Hindsight& hindsight, int actions) {
   Json verdicts = Json::array(), attempts = Json::array();
   for (int i = 1; i <= actions; ++i) verdicts.push_back(verdict_name(hindsight.by_last(i)));
   for (const EscapeSearch& search : hindsight.searches) attempts.push_back(search.attempts);
-  return {{"collision_kind", driving::collision_kind_name(hindsight.collision.kind)},
+  return {{"collision_kind", name_of(hindsight.collision.kind)},
           {"step", hindsight.step},
           {"actions_in_sight", hindsight.actions_in_sight},
           {"by_reacting", verdict_name(hindsight.by_reacting())},

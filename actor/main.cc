@@ -71,12 +71,11 @@ int evaluate(const Arguments& arguments, const RunConfig& config, const RunDirec
 int redrive(const Arguments& arguments, const RunConfig& config, world::World& world) {
   const actor::Redriven result = actor::redrive(config, arguments.episode, world, arguments.fcd);
   const auto& summary = result.summary;
-  std::printf(
-      "%d steps, BP reward %.1f, %d lane changes, %s, trajectory %016llx: %s\n", summary.steps,
-      summary.bp_reward, summary.lane_changes,
-      summary.collision ? driving::collision_kind_name(summary.collision->kind) : "no collision",
-      static_cast<unsigned long long>(result.hash),
-      result.hash == result.recorded_hash ? "as recorded" : "NOT as recorded");
+  std::printf("%d steps, BP reward %.1f, %d lane changes, %s, trajectory %016llx: %s\n",
+              summary.steps, summary.bp_reward, summary.lane_changes,
+              summary.collision ? name_of(summary.collision->kind) : "no collision",
+              static_cast<unsigned long long>(result.hash),
+              result.hash == result.recorded_hash ? "as recorded" : "NOT as recorded");
   return result.hash == result.recorded_hash ? 0 : 1;
 }
 

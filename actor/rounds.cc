@@ -39,7 +39,7 @@ class Trainer {
         time_(time),
         delay_(delay),
         schedule_(config),
-        metrics_(directory.metrics(fmt::format("actor-{}", actor_))),
+        metrics_(directory.metrics(actor_name(actor_))),
         replay_(connect_to_replay(config.run, identity)),
         learner_(connect_to_learner(config.run, identity)) {}
 
@@ -141,15 +141,15 @@ class Trainer {
     const RolloutTotals totals = rollout_->take_totals();
     const auto steps = static_cast<double>(std::max<std::int64_t>(totals.steps, 1));
     std::vector<std::pair<std::string, double>> values = {
-        {"charts/SPS", steps / time_.wall_s()},
-        {"charts/reward_per_1000", 1000.0 * totals.reward / steps},
-        {"charts/collisions_per_1000", 1000.0 * static_cast<double>(totals.collisions) / steps},
-        {"charts/epsilon", totals.epsilon}};
+        {metric::kStepsPerS, steps / time_.wall_s()},
+        {metric::kRewardPer1000, 1000.0 * totals.reward / steps},
+        {metric::kCollisionsPer1000, 1000.0 * static_cast<double>(totals.collisions) / steps},
+        {metric::kEpsilon, totals.epsilon}};
     for (auto& value : time_.take()) values.push_back(std::move(value));
     if (totals.episodes > 0) {
       const auto episodes = static_cast<double>(totals.episodes);
-      values.emplace_back("charts/episodic_return", totals.episodic_return / episodes);
-      values.emplace_back("charts/episodes", episodes);
+      values.emplace_back(metric::kEpisodicReturn, totals.episodic_return / episodes);
+      values.emplace_back(metric::kEpisodes, episodes);
     }
     const Phase phase = schedule_.phase_of(round);
     const std::int64_t phase_steps =

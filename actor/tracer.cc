@@ -74,8 +74,7 @@ class Tracer {
     trace_.bp_reward = summary.bp_reward;
     trace_.lane_changes = summary.lane_changes;
     if (summary.collision) {
-      trace_.collision = {driving::collision_kind_name(summary.collision->kind),
-                          summary.collision->other};
+      trace_.collision = {name_of(summary.collision->kind), summary.collision->other};
     }
     return std::move(trace_);
   }

@@ -42,8 +42,8 @@ class Monitor {
   Monitor(const RunConfig& config, const RunDirectory& directory, std::uint64_t rounds_done)
       : progress_(config, rounds_done, available_cores(), monotonic_s()),
         scalars_(config),
-        learner_(directory.metrics(kLearner)),
-        replay_(directory.metrics(kReplay)) {
+        learner_(directory.metrics(kLearnerName)),
+        replay_(directory.metrics(kReplayName)) {
     for (int i = 0; i < config.run.actors; ++i) {
       actors_.emplace_back(directory.metrics(actor_name(i)));
     }
@@ -174,7 +174,7 @@ int supervise(const RunConfig& config, const RunDirectory& directory, std::uint6
                                             : std::string("the beginning")));
   };
   const Ending ending = run_together(training_plan(config.run, directory, program_directory()),
-                                     kLearner, limits, supervision);
+                                     kLearnerName, limits, supervision);
   monitor.tick();
 
   const std::uint64_t rounds = rounds_done(directory);
@@ -266,7 +266,7 @@ int resume(const ResumeOptions& options, const std::string& program) {
     print_what_comes_next(directory, program);
     return 0;
   }
-  const auto last = last_metrics_line(directory.metrics(kLearner));
+  const auto last = last_metrics_line(directory.metrics(kLearnerName));
   const std::uint64_t reached = last ? std::max(last->round + 1, rounds) : rounds;
   fmt::print("{}: {}: {}; {} steps after it are repeated\n", run,
              rounds > 0 ? "goes on from the checkpoint of" : "no checkpoint yet, begins anew",

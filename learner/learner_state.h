@@ -15,8 +15,6 @@
 
 namespace corridor::learner {
 
-inline constexpr const char* kLearnerFile = "learner.safetensors";
-
 // Parameters that were evaluated greedily.
 struct Candidate {
   std::uint64_t version = 0;

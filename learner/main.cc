@@ -48,7 +48,7 @@ int run(const std::string& root) {
   record_libraries(directory, config.run.device);
 
   learner::LearnerState state = learner::load_state(config, directory);
-  MetricsWriter metrics(directory.metrics("learner"));
+  MetricsWriter metrics(directory.metrics(kLearnerName));
   Server server(addresses(config.run, run_id).learner, run_id);
   learner::Publisher publisher(server, static_cast<std::size_t>(config.run.actors));
   Client client = connect_to_replay(config.run, {run_id, Role::kLearner, 0, draw_incarnation()});

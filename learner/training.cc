@@ -262,22 +262,22 @@ void Training::report(std::uint64_t round, const Opened& opened, const BlockResu
   if (!selected_ && !phase_ends && rounds_done % every != 0) return;
 
   std::vector<std::pair<std::string, double>> values = {
-      {"charts/SPS", static_cast<double>(steps_since_report_) / around_.time.wall_s()},
-      {"charts/updates", static_cast<double>(result.updates)},
-      {"charts/learning_rate", between(settings.learning_rate, settings.learning_rate_end,
-                                       schedule_.phase_progress(round))}};
+      {metric::kStepsPerS, static_cast<double>(steps_since_report_) / around_.time.wall_s()},
+      {metric::kUpdates, static_cast<double>(result.updates)},
+      {metric::kLearningRate, between(settings.learning_rate, settings.learning_rate_end,
+                                      schedule_.phase_progress(round))}};
   for (auto& value : around_.time.take()) values.push_back(std::move(value));
   if (opened.batches > 0) {
-    values.emplace_back("losses/td_loss", result.loss);
-    values.emplace_back("losses/q_values", result.q_value);
-    if (settings.networks() > 1) values.emplace_back("losses/risk_values", result.risk);
+    values.emplace_back(metric::kTdLoss, result.loss);
+    values.emplace_back(metric::kQValues, result.q_value);
+    if (settings.networks() > 1) values.emplace_back(metric::kRiskValues, result.risk);
   }
   if (selected_) {
     const double thousands = static_cast<double>(selected_->steps) / 1000.0;
-    values.emplace_back("eval/reward_per_1000", selected_->reward / thousands);
-    values.emplace_back("eval/collisions_per_1000",
+    values.emplace_back(metric::kGreedyRewardPer1000, selected_->reward / thousands);
+    values.emplace_back(metric::kGreedyCollisionsPer1000,
                         static_cast<double>(selected_->collisions) / thousands);
-    values.emplace_back("eval/score", score_);
+    values.emplace_back(metric::kGreedyScore, score_);
   }
   around_.metrics.write(phase_name(phase), round, steps, values);
   steps_since_report_ = 0;

@@ -151,11 +151,11 @@ std::vector<std::pair<std::string, double>> ReplayService::metrics() const {
   const auto value = [](std::uint64_t count) { return static_cast<double>(count); };
   const std::uint64_t counted = limiter_.counted_rows(store_.inserted());
   return {
-      {"replay/size", value(store_.size())},
-      {"replay/inserted", value(store_.inserted())},
-      {"replay/sampled", value(store_.sampled())},
-      {"replay/samples_per_insert", counted == 0 ? 0.0 : value(store_.sampled()) / value(counted)},
-      {"replay/stale_priorities", value(store_.stale_priorities())}};
+      {metric::kReplaySize, value(store_.size())},
+      {metric::kReplayInserted, value(store_.inserted())},
+      {metric::kReplaySampled, value(store_.sampled())},
+      {metric::kSamplesPerInsert, counted == 0 ? 0.0 : value(store_.sampled()) / value(counted)},
+      {metric::kStalePriorities, value(store_.stale_priorities())}};
 }
 
 Snapshot ReplayService::snapshot(const std::filesystem::path& previous) const {

@@ -29,7 +29,7 @@ void write(const Snapshot& snapshot, const fs::path& directory, const fs::path& 
   if (!snapshot.rows.empty()) {
     const std::size_t count = snapshot.rows.size() / snapshot.stride;
     TensorFile file;
-    file.tensors.emplace("rows", Tensor{{count, snapshot.stride}, snapshot.rows});
+    file.tensors.emplace(kRowsTensor, Tensor{{count, snapshot.stride}, snapshot.rows});
     const RowsFile place{snapshot.first_new_key, snapshot.first_new_key + count};
     write_tensors(directory / place.name(), file);
   }

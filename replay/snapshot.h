@@ -14,14 +14,12 @@ namespace corridor::replay {
 // What the replay is between two blocks, as a value of its own, but for rows that are on disk
 // already.
 struct Snapshot {
-  TensorFile head;                  // replay.safetensors
+  TensorFile head;                  // kReplayFile
   std::vector<RowsFile> files;      // of an earlier checkpoint, ascending
   std::uint64_t first_new_key = 0;  // what follows them
   std::vector<float> rows;          // from first_new_key on: [row, stride]; may be none
   std::size_t stride = 0;
 };
-
-inline constexpr const char* kReplayFile = "replay.safetensors";
 
 // Links the files, which `previous` has, and writes the rest: on disk when it returns. Throws
 // Failure.

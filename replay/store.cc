@@ -182,18 +182,18 @@ void Store::save(TensorFile& file) const {
   for (std::uint64_t key = oldest_key(); key < next_key_; ++key) {
     leaves.push_back(tree_.value(key % capacity_));
   }
-  file.put("leaves", std::move(leaves));
+  file.put(kLeavesTensor, std::move(leaves));
   file.put("first_key", std::vector{first_key_});
-  file.put("next_key", std::vector{next_key_});
+  file.put(kNextKeyTensor, std::vector{next_key_});
   file.put("sampled", std::vector{sampled_});
   file.put("stale_priorities", std::vector{stale_priorities_});
 }
 
 void Store::load(const TensorFile& file, const std::string& name) {
   CORRIDOR_CHECK(inserted() == 0, "{} rows in the way", inserted());
-  const auto& leaves = file.get<float>("leaves", name);
+  const auto& leaves = file.get<float>(kLeavesTensor, name);
   first_key_ = number(file, "first_key", name);
-  next_key_ = number(file, "next_key", name);
+  next_key_ = number(file, kNextKeyTensor, name);
   sampled_ = number(file, "sampled", name);
   stale_priorities_ = number(file, "stale_priorities", name);
   const bool fits = first_key_ <= next_key_ && leaves.size() == size() && are_priorities(leaves);
@@ -209,7 +209,7 @@ void Store::load(const TensorFile& file, const std::string& name) {
 }
 
 void Store::load_rows(std::uint64_t first_key, const TensorFile& file, const std::string& name) {
-  const auto& rows = file.get<float>("rows", name);
+  const auto& rows = file.get<float>(kRowsTensor, name);
   const std::size_t stride = layout_.stride();
   const std::uint64_t count = rows.size() / stride;
   if (rows.size() % stride != 0 || !are_finite(rows) || first_key > next_key_ ||

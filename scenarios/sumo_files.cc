@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "proto/base/failure.h"
+#include "proto/settings/sumo_names.h"
 #include "proto/system/files.h"
 #include "proto/system/subprocess.h"
 
@@ -42,7 +43,7 @@ std::string complaint(const std::string& output) {
 
 void run_netconvert(const fs::path& directory, std::chrono::milliseconds patience) {
   const fs::path edges = directory / "road.edg.xml";
-  const fs::path network = directory / "road.net.xml";
+  const fs::path network = directory / kSumoNetworkFile;
   // Four decimals of a metre: two would move lanes whose width is no multiple of a centimetre.
   const auto result =
       run_subprocess(find_netconvert(),
@@ -73,9 +74,9 @@ std::string nodes_xml(const RoadSettings& road) {
 std::string edges_xml(const RoadSettings& road) {
   return fmt::format(
       "{}<edges>\n"
-      "  <edge id=\"road\" from=\"west\" to=\"east\" numLanes=\"{}\" width=\"{}\" speed=\"{}\"/>\n"
+      "  <edge id=\"{}\" from=\"west\" to=\"east\" numLanes=\"{}\" width=\"{}\" speed=\"{}\"/>\n"
       "</edges>\n",
-      kHeader, road.lanes, road.lane_width_m, road.speed_limit_mps);
+      kHeader, kSumoRoad, road.lanes, road.lane_width_m, road.speed_limit_mps);
 }
 
 // So little of the ego that a vehicle in the intruded lane's other half is not in its way.
@@ -98,32 +99,33 @@ std::string vehicle_types_xml(const TrafficSettings& traffic, const EgoSettings&
 
   std::string xml = std::string(kHeader) + "<routes>\n";
   xml += vehicle_type_xml(
-      "ego", fmt::format("speedFactor=\"1\" speedDev=\"0\" length=\"{}\" width=\"{}\" "
-                         "accel=\"{}\" {} color=\"red\"",
-                         ego.length_m, ego.width_m, ego.acceleration_max_mps2, keep_right));
-  xml += vehicle_type_xml("ghost",
+      kEgoType, fmt::format("speedFactor=\"1\" speedDev=\"0\" length=\"{}\" width=\"{}\" "
+                            "accel=\"{}\" {} color=\"red\"",
+                            ego.length_m, ego.width_m, ego.acceleration_max_mps2, keep_right));
+  xml += vehicle_type_xml(kGhostType,
                           fmt::format("speedFactor=\"1\" speedDev=\"0\" length=\"{}\" width=\"{}\" "
                                       "accel=\"{}\" color=\"red\"",
                                       ego.length_m, kGhostWidth_m, ego.acceleration_max_mps2));
   for (std::size_t kind = 0; kind < kVehicleKinds.size(); ++kind) {
     for (const char* alignment : kAlignments) {
       xml += vehicle_type_xml(
-          fmt::format("{}_{}", kVehicleKinds[kind], alignment),
+          vehicle_type(static_cast<VehicleKind>(kind), alignment),
           fmt::format("{} {} latAlignment=\"{}\"", kinds[kind], keep_right, alignment));
     }
   }
   xml += vehicle_type_xml(
-      "object", fmt::format("length=\"{}\" width=\"{}\" minGap=\"0\" sigma=\"0\" color=\"white\"",
-                            traffic.object_length_m, traffic.object_width_m));
-  return xml + "  <route id=\"road\" edges=\"road\"/>\n</routes>\n";
+      kObjectType,
+      fmt::format("length=\"{}\" width=\"{}\" minGap=\"0\" sigma=\"0\" color=\"white\"",
+                  traffic.object_length_m, traffic.object_width_m));
+  return xml + fmt::format("  <route id=\"{0}\" edges=\"{0}\"/>\n</routes>\n", kSumoRoad);
 }
 
 std::string configuration_xml(const SimulationSettings& simulation) {
   return fmt::format(
       "{}<configuration>\n"
       "  <input>\n"
-      "    <net-file value=\"road.net.xml\"/>\n"
-      "    <route-files value=\"traffic.rou.xml\"/>\n"
+      "    <net-file value=\"{}\"/>\n"
+      "    <route-files value=\"{}\"/>\n"
       "  </input>\n"
       "  <time><step-length value=\"{}\"/></time>\n"
       "  <processing>\n"
@@ -133,7 +135,8 @@ std::string configuration_xml(const SimulationSettings& simulation) {
       "    <collision.mingap-factor value=\"0\"/>\n"
       "  </processing>\n"
       "</configuration>\n",
-      kHeader, simulation.substep_s(), simulation.lateral_resolution_m);
+      kHeader, kSumoNetworkFile, kSumoRoutesFile, simulation.substep_s(),
+      simulation.lateral_resolution_m);
 }
 
 void write_sumo_files(const RunConfig& config, const fs::path& directory,
@@ -144,7 +147,7 @@ void write_sumo_files(const RunConfig& config, const fs::path& directory,
   const std::pair<const char*, std::string> files[] = {
       {"road.nod.xml", nodes_xml(config.road)},
       {"road.edg.xml", edges_xml(config.road)},
-      {"traffic.rou.xml", vehicle_types_xml(config.traffic, config.ego)},
+      {kSumoRoutesFile, vehicle_types_xml(config.traffic, config.ego)},
       {"road.sumocfg", configuration_xml(config.simulation)}};
   for (const auto& [name, text] : files) write_file(directory / name, text);
   run_netconvert(directory, netconvert_deadline);

@@ -1,13 +1,10 @@
 // A scenario's files for SUMO: the road and the vehicle types. They are plain SUMO files that its
 // own tools open (`sumo-gui road.sumocfg`).
 //
-// The road is one straight edge `road` with lanes `road_0` (right) to `road_<n-1>`, on which runs
-// the route `road`. Vehicle types are `ego`, `object`, and `<kind>_<alignment>` for each of
-// kVehicleKinds and kAlignments: the kind fixes size and speed, the alignment where in its lane a
-// driver keeps.
+// The road is one straight edge with lanes 0 (right) to n-1, on which runs one route. Their names
+// and those of the vehicle types are in proto/settings/sumo_names.h.
 #pragma once
 
-#include <array>
 #include <chrono>
 #include <filesystem>
 #include <string>
@@ -15,9 +12,6 @@
 #include "proto/settings/settings.h"
 
 namespace corridor::scenarios {
-
-inline constexpr std::array kVehicleKinds = {"car", "slow", "truck"};
-inline constexpr std::array kAlignments = {"center", "arbitrary", "right", "left"};
 
 // The contents of the files. Pure.
 std::string nodes_xml(const RoadSettings& road);

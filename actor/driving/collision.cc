@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "proto/base/failure.h"
-
 namespace corridor::driving {
 namespace {
 
@@ -63,14 +61,6 @@ CollisionKind kind_of(const Scene& before, const Scene& after, const Vehicle& ot
 }
 
 }  // namespace
-
-const char* collision_kind_name(CollisionKind kind) {
-  constexpr const char* kNames[kCollisionKinds] = {"rear_ended", "rear_ending", "side_by_other",
-                                                   "side_by_ego", "off_road"};
-  const auto index = static_cast<int>(kind);
-  CORRIDOR_CHECK(index >= 0 && index < kCollisionKinds, "collision kind {}", index);
-  return kNames[index];
-}
 
 bool overlap_across(const Ego& ego, const Vehicle& other, const EgoSettings& size) {
   return std::abs(ego.d_m - other.d_m) < (size.width_m + other.width_m) / 2;

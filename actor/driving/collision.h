@@ -5,20 +5,10 @@
 #include <optional>
 
 #include "actor/driving/scene.h"
+#include "proto/settings/collision_kinds.h"
 #include "proto/settings/settings.h"
 
 namespace corridor::driving {
-
-enum class CollisionKind {
-  kRearEnded = 0,    // another vehicle ran into the ego from behind
-  kRearEnding = 1,   // the ego ran into another vehicle
-  kSideByOther = 2,  // another vehicle moved sideways into the ego
-  kSideByEgo = 3,    // the ego moved sideways into another vehicle
-  kOffRoad = 4,      // the ego's middle left the road: where a car has dynamics of its own
-};
-inline constexpr int kCollisionKinds = 5;
-// "rear_ended", "rear_ending", "side_by_other", "side_by_ego", "off_road"
-const char* collision_kind_name(CollisionKind kind);
 
 struct Collision {
   CollisionKind kind = CollisionKind::kRearEnded;

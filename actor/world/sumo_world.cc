@@ -21,10 +21,7 @@ using driving::Vehicle;
 using Sumo = libsumo::Simulation;
 using SumoVehicle = libsumo::Vehicle;
 
-constexpr const char* kEgo = "ego";
-constexpr const char* kEdge = "road";
-constexpr const char* kRoute = "road";
-constexpr const char* kGhost = "ghost";  // its type
+constexpr const char* kEgo = "ego";  // its id
 // An intrusion into the next lane that is less is none.
 constexpr double kIntrusion_m = 0.1;
 
@@ -37,7 +34,6 @@ constexpr int kKeepExactPosition = 2;      // moveToXY's keepRoute
 std::atomic<bool> world_exists = false;
 
 std::string sumo_id(int id) { return fmt::format("v{}", id); }
-std::string lane_id(int lane) { return fmt::format("{}_{}", kEdge, lane); }
 
 void require_file(const std::filesystem::path& file) {
   if (!std::filesystem::is_regular_file(file)) {
@@ -95,7 +91,7 @@ driving::Scene SumoWorld::begin(const EpisodeStart& start) {
     watch_ = start.watch;
     ghost_lane_.reset();
     ghosts_ = 0;
-    const auto right_lane = libsumo::Lane::getShape(lane_id(0)).value;
+    const auto right_lane = libsumo::Lane::getShape(sumo_lane(0)).value;
     right_edge_y_m_ = right_lane.front().y - settings_.road.lane_width_m / 2;
     new_objects_.clear();
     traffic_.emplace(traffic_scenario(start), start.seed);
@@ -170,7 +166,8 @@ void SumoWorld::place(const Ego& ego) {
   const double angle =
       ego.yaw_rad == 0.0 ? libsumo::INVALID_DOUBLE_VALUE : 90.0 - kDegreesPerRadian * ego.yaw_rad;
   const double d_m = on_road_m(ego.d_m, settings_.road, settings_.ego);
-  SumoVehicle::moveToXY(kEgo, kEdge, -1, ego.s_m, right_edge_y_m_ + d_m, angle, kKeepExactPosition);
+  SumoVehicle::moveToXY(kEgo, kSumoRoad, -1, ego.s_m, right_edge_y_m_ + d_m, angle,
+                        kKeepExactPosition);
   SumoVehicle::setSpeed(kEgo, ego.speed_mps);
   if (settings_.dynamics.ghost) place_ghost(ego);
 }
@@ -187,23 +184,23 @@ void SumoWorld::place_ghost(const Ego& ego) {
   if (lane_m - from_line_m < reach_m && lane + 1 < settings_.road.lanes) intruded = lane + 1;
 
   if (ghost_lane_ && ghost_lane_ != intruded) {
-    SumoVehicle::remove(fmt::format("{}{}", kGhost, ghosts_));
+    SumoVehicle::remove(fmt::format("{}{}", kGhostType, ghosts_));
     ghost_lane_.reset();
   }
   if (!intruded) return;
   if (!ghost_lane_) {
-    const std::string id = fmt::format("{}{}", kGhost, ++ghosts_);
-    SumoVehicle::add(id, kRoute, kGhost);
-    SumoVehicle::moveTo(id, lane_id(*intruded), scene_.ego.s_m);
+    const std::string id = fmt::format("{}{}", kGhostType, ++ghosts_);
+    SumoVehicle::add(id, kSumoRoad, kGhostType);
+    SumoVehicle::moveTo(id, sumo_lane(*intruded), scene_.ego.s_m);
     SumoVehicle::setPreviousSpeed(id, ego.speed_mps);
     obey_trajectories(id);
     ghost_lane_ = intruded;
   }
-  const std::string id = fmt::format("{}{}", kGhost, ghosts_);
+  const std::string id = fmt::format("{}{}", kGhostType, ghosts_);
   const double width_m = SumoVehicle::getWidth(id);
   const double d_m =
       *intruded < lane ? lane * lane_m - width_m / 2 : (lane + 1) * lane_m + width_m / 2;
-  SumoVehicle::moveToXY(id, kEdge, -1, ego.s_m, right_edge_y_m_ + d_m,
+  SumoVehicle::moveToXY(id, kSumoRoad, -1, ego.s_m, right_edge_y_m_ + d_m,
                         libsumo::INVALID_DOUBLE_VALUE, kKeepExactPosition);
   SumoVehicle::setSpeed(id, ego.speed_mps);
 }
@@ -226,7 +223,7 @@ void SumoWorld::end() {
 void SumoWorld::put_objects_to_the_edge() {
   for (const Vehicle& object : new_objects_) {
     const double s_m = object.s_m + object.speed_mps * settings_.simulation.substep_s();
-    SumoVehicle::moveToXY(sumo_id(object.id), kEdge, -1, s_m, right_edge_y_m_ + object.d_m,
+    SumoVehicle::moveToXY(sumo_id(object.id), kSumoRoad, -1, s_m, right_edge_y_m_ + object.d_m,
                           libsumo::INVALID_DOUBLE_VALUE, kKeepExactPosition);
   }
   new_objects_.clear();
@@ -240,7 +237,7 @@ StepResult SumoWorld::finish_substep(const Motion& after) {
   result.collision = driving::find_collision(before, scene_, settings_.ego);
   const double road_width_m = settings_.road.lanes * settings_.road.lane_width_m;
   if (scene_.ego.d_m < 0.0 || scene_.ego.d_m > road_width_m) {
-    result.collision = driving::Collision{driving::CollisionKind::kOffRoad, 0};
+    result.collision = driving::Collision{CollisionKind::kOffRoad, 0};
   }
   const TrafficChange change = traffic_->decide(scene_);
   time_.charge(TimePart::kWorld);
@@ -285,9 +282,9 @@ void SumoWorld::apply(const TrafficChange& change) {
 // once.
 void SumoWorld::add(const Entrance& entrance) {
   const std::string id = sumo_id(entrance.vehicle.id);
-  SumoVehicle::add(id, kRoute, entrance.type);
+  SumoVehicle::add(id, kSumoRoad, entrance.type);
   SumoVehicle::setSpeedFactor(id, entrance.speed_factor);
-  SumoVehicle::moveTo(id, lane_id(entrance.lane), entrance.vehicle.s_m);
+  SumoVehicle::moveTo(id, sumo_lane(entrance.lane), entrance.vehicle.s_m);
   SumoVehicle::setPreviousSpeed(id, entrance.vehicle.speed_mps);
   if (entrance.type == kObjectType) {
     SumoVehicle::setLaneChangeMode(id, kNoLaneChanges);
@@ -301,8 +298,8 @@ void SumoWorld::add(const Entrance& entrance) {
 
 void SumoWorld::add_ego(const driving::Ego& ego, EgoDriver driver) {
   const int lane = static_cast<int>(ego.d_m / settings_.road.lane_width_m);
-  SumoVehicle::add(kEgo, kRoute, kEgo);
-  SumoVehicle::moveTo(kEgo, lane_id(lane), ego.s_m);
+  SumoVehicle::add(kEgo, kSumoRoad, kEgoType);
+  SumoVehicle::moveTo(kEgo, sumo_lane(lane), ego.s_m);
   SumoVehicle::setPreviousSpeed(kEgo, ego.speed_mps);
   if (driver == EgoDriver::kPlanner) obey_trajectories(kEgo);
 }
@@ -327,14 +324,15 @@ std::vector<std::string> SumoWorld::options(const EpisodeStart& start) const {
 
 // The sizes of the vehicle types, as the file that SUMO has loaded gives them.
 TrafficScenario SumoWorld::traffic_scenario(const EpisodeStart& start) const {
-  const auto size = [](const char* type) {
+  const auto size = [](VehicleKind kind) {
+    const std::string type = vehicle_type(kind, kAlignments.front());
     return VehicleSize{libsumo::VehicleType::getLength(type), libsumo::VehicleType::getWidth(type)};
   };
   return {start.traffic.value_or(settings_.traffic),
           settings_.road,
           settings_.ego,
           settings_.simulation.substep_s(),
-          {size("car_center"), size("slow_center"), size("truck_center")}};
+          {size(VehicleKind::kCar), size(VehicleKind::kSlow), size(VehicleKind::kTruck)}};
 }
 
 }  // namespace corridor::world

@@ -35,10 +35,9 @@ inline WorldSettings world_settings(const RunConfig& config) {
 
 class SumoWorld : public World {
  public:
-  // `network` and `vehicle_types` as scenarios/sumo_files.h makes them (road.net.xml,
-  // traffic.rou.xml). At most one SumoWorld exists in a process (CHECK): libsumo has one
-  // simulation. `time` outlives the world. Throws Failure when the road is too short for an episode
-  // or a file is missing.
+  // `network` and `vehicle_types` as scenarios/sumo_files.h makes them. At most one SumoWorld
+  // exists in a process (CHECK): libsumo has one simulation. `time` outlives the world. Throws
+  // Failure when the road is too short for an episode or a file is missing.
   SumoWorld(const WorldSettings& settings, std::filesystem::path network,
             std::filesystem::path vehicle_types, TimeAccount& time);
   ~SumoWorld() override;

@@ -41,11 +41,6 @@ enum Draw : std::uint64_t {
 // What an object's random numbers are for: with its index, the counters of Purpose::kObject.
 enum ObjectDraw : std::uint64_t { kObjectPlace = 0, kObjectLane = 1, kObjectSide = 2 };
 
-const char* kind_name(VehicleKind kind) {
-  constexpr const char* kNames[] = {"car", "slow", "truck"};
-  return kNames[static_cast<int>(kind)];
-}
-
 }  // namespace
 
 Traffic::Traffic(const TrafficScenario& scenario, std::uint64_t episode_seed)
@@ -234,7 +229,6 @@ void Traffic::blind(const driving::Scene& scene, TrafficChange& change) {
 }
 
 Traffic::Candidate Traffic::draw(bool ahead) {
-  constexpr const char* kAlignments[] = {"center", "arbitrary", "right", "left"};
   const TrafficSettings& traffic = scenario_.traffic;
   Candidate candidate;
   candidate.ahead = ahead;
@@ -255,9 +249,9 @@ Traffic::Candidate Traffic::draw(bool ahead) {
   const VehicleSize& size = scenario_.sizes[static_cast<std::size_t>(kind)];
   entrance.vehicle.length_m = size.length_m;
   entrance.vehicle.width_m = size.width_m;
-  entrance.type = fmt::format("{}_{}", kind_name(kind),
-                              kAlignments[random_below(std::size(kAlignments), seed_,
-                                                       Purpose::kTraffic, {id, kAlignment})]);
+  const std::uint64_t alignment =
+      random_below(kAlignments.size(), seed_, Purpose::kTraffic, {id, kAlignment});
+  entrance.type = vehicle_type(kind, kAlignments[alignment]);
   return candidate;
 }
 

@@ -25,11 +25,9 @@
 
 #include "actor/driving/scene.h"
 #include "proto/settings/settings.h"
+#include "proto/settings/sumo_names.h"
 
 namespace corridor::world {
-
-enum class VehicleKind { kCar = 0, kSlow = 1, kTruck = 2 };
-inline constexpr int kVehicleKinds = 3;
 
 struct VehicleSize {
   double length_m = 0.0;
@@ -42,17 +40,16 @@ struct TrafficScenario {
   RoadSettings road;
   EgoSettings ego;
   double step_s = 1.0;
-  std::array<VehicleSize, kVehicleKinds> sizes;
+  std::array<VehicleSize, kVehicleKinds.size()> sizes;  // by VehicleKind
 };
 
 inline constexpr double kObjectSpacing_m = 40.0;
-inline constexpr const char* kObjectType = "object";  // SUMO's vehicle type
 
 // A vehicle that is put on the road: in the middle of a lane, an object at its edge.
 struct Entrance {
   driving::Vehicle vehicle;
   int lane = 0;
-  std::string type;           // SUMO's vehicle type (scenarios/sumo_files.h)
+  std::string type;           // SUMO's vehicle type
   double speed_factor = 1.0;  // desired speed / speed limit
 };
 

@@ -4,8 +4,6 @@
 
 namespace corridor::cluster {
 
-std::string actor_name(int index) { return fmt::format("actor-{}", index); }
-
 std::vector<ProcessPlan> training_plan(const RunSettings& settings, const RunDirectory& directory,
                                        const std::filesystem::path& programs) {
   const std::string run = directory.root().string();
@@ -14,8 +12,8 @@ std::vector<ProcessPlan> training_plan(const RunSettings& settings, const RunDir
     arguments.insert(arguments.begin(), {(programs / program).string(), run});
     return ProcessPlan{name, std::move(arguments), directory.log(name)};
   };
-  std::vector<ProcessPlan> plan = {process(kReplay, "corridor-replay", {}),
-                                   process(kLearner, "corridor-learner", {})};
+  std::vector<ProcessPlan> plan = {process(kReplayName, "corridor-replay", {}),
+                                   process(kLearnerName, "corridor-learner", {})};
   for (int i = 0; i < settings.actors; ++i) {
     plan.push_back(process(actor_name(i), "corridor-actor", {"--index", std::to_string(i)}));
     // The replay server knows where it stood.

@@ -19,15 +19,9 @@ struct ProcessPlan {
   bool operator==(const ProcessPlan&) const = default;
 };
 
-// The one of a training that ends by itself when all is done, and is to be stopped before the
-// others, since its checkpoint needs them.
-inline constexpr const char* kLearner = "learner";
-inline constexpr const char* kReplay = "replay";
-
-// "actor-<index>": names the process, its log and its metrics file.
-std::string actor_name(int index);
-
-// Replay server, learner, and actors 0 .. actors-1. `programs` is the directory of the programs.
+// Replay server, learner, and actors 0 .. actors-1. The learner ends by itself when all is done,
+// and is to be stopped before the others, since its checkpoint needs them. `programs` is the
+// directory of the programs.
 std::vector<ProcessPlan> training_plan(const RunSettings& settings, const RunDirectory& directory,
                                        const std::filesystem::path& programs);
 

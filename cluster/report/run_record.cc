@@ -65,7 +65,7 @@ RunRecord read_run(const std::filesystem::path& root) {
   for (int i = 0; i < run.config.run.actors; ++i) {
     run.actors.push_back(read_metrics(directory, actor_name(i)));
   }
-  run.learner.push_back(read_metrics(directory, kLearner));
+  run.learner.push_back(read_metrics(directory, kLearnerName));
   if (std::all_of(run.actors.begin(), run.actors.end(),
                   [](const ProcessMetrics& lines) { return lines.empty(); })) {
     throw Failure("{} has no metrics of its actors yet: nothing was trained, or it has only begun",

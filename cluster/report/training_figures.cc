@@ -18,21 +18,21 @@ struct Quantity {
   const char* weight;              // likewise; may be empty
   double Level::*level = nullptr;  // what the rules come to; of some quantities
 };
-constexpr Quantity kReward = {"reward", "reward per 1000 steps", "charts/reward_per_1000", "",
+constexpr Quantity kReward = {"reward", "reward per 1000 steps", metric::kRewardPer1000, "",
                               &Level::reward_per_1000};
 constexpr Quantity kCollisions = {"collisions", "collisions per 1000 steps",
-                                  "charts/collisions_per_1000", "", &Level::collisions_per_1000};
+                                  metric::kCollisionsPer1000, "", &Level::collisions_per_1000};
 constexpr Quantity kEpisode = {"reward of an episode", "reward per episode",
-                               "charts/episodic_return", "charts/episodes",
+                               metric::kEpisodicReturn, metric::kEpisodes,
                                &Level::reward_per_episode};
-constexpr Quantity kLoss = {"loss", "Huber loss of TD errors", "losses/td_loss", ""};
-constexpr Quantity kQ = {"Q-value", "scaled return", "losses/q_values", ""};
-constexpr Quantity kRisk = {"risk", "discounted collisions", "losses/risk_values", ""};
+constexpr Quantity kLoss = {"loss", "Huber loss of TD errors", metric::kTdLoss, ""};
+constexpr Quantity kQ = {"Q-value", "scaled return", metric::kQValues, ""};
+constexpr Quantity kRisk = {"risk", "discounted collisions", metric::kRiskValues, ""};
 constexpr Quantity kGreedyReward = {"reward, greedy", "reward per 1000 steps",
-                                    "eval/reward_per_1000", ""};
+                                    metric::kGreedyRewardPer1000, ""};
 constexpr Quantity kGreedyCollisions = {"collisions, greedy", "collisions per 1000 steps",
-                                        "eval/collisions_per_1000", ""};
-constexpr Quantity kScore = {"score", "reward - cost of collisions", "eval/score", ""};
+                                        metric::kGreedyCollisionsPer1000, ""};
+constexpr Quantity kScore = {"score", "reward - cost of collisions", metric::kGreedyScore, ""};
 
 using Processes = std::vector<ProcessMetrics> RunRecord::*;
 

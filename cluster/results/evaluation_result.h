@@ -8,11 +8,9 @@
 #include <vector>
 
 #include "proto/base/json_fwd.h"
+#include "proto/settings/collision_kinds.h"
 
 namespace corridor::cluster {
-
-inline constexpr std::array kCollisionKinds = {"rear_ended", "rear_ending", "side_by_other",
-                                               "side_by_ego", "off_road"};
 
 struct EpisodeResult {
   std::int64_t steps = 0;

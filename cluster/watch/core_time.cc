@@ -10,20 +10,20 @@
 namespace corridor::cluster {
 
 CoreTime cores_by_part(const MetricsValues& values) {
-  const double wall_s = value_of(values, "time/wall_s");
+  const double wall_s = value_of(values, kWallTimeMetric);
   if (wall_s <= 0.0) return {};
   CoreTime parts;
   double busy = 0.0;
   for (std::size_t i = 0; i < kTimeParts; ++i) {
     const auto part = static_cast<TimePart>(i);
-    const auto found = values.find(std::string("time/") + time_part_name(part));
+    const auto found = values.find(time_metric(part));
     if (is_wait(part) || found == values.end()) continue;
     parts[time_part_name(part)] = found->second;
     busy += found->second;
   }
-  const double cores = value_of(values, "time/cpu_s") / wall_s;
+  const double cores = value_of(values, kCpuTimeMetric) / wall_s;
   for (auto& [part, share] : parts) share *= busy > 0.0 ? cores / busy : 0.0;
-  parts["io"] = value_of(values, "time/cpu_of_io_s") / wall_s;
+  parts["io"] = value_of(values, kIoCpuTimeMetric) / wall_s;
   return parts;
 }
 

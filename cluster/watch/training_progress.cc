@@ -108,11 +108,11 @@ std::string TrainingProgress::headline() const {
 std::string TrainingProgress::details() const {
   std::string text;
   const auto append = [&](const std::string& part) { text += (text.empty() ? "" : "; ") + part; };
-  if (const auto reward = mean("actor", "charts/reward_per_1000")) {
+  if (const auto reward = mean("actor", metric::kRewardPer1000)) {
     append(fmt::format("reward {:.0f}, collisions {:.1f} per 1000 steps", *reward,
-                       mean("actor", "charts/collisions_per_1000").value_or(0.0)));
+                       mean("actor", metric::kCollisionsPer1000).value_or(0.0)));
   }
-  if (const auto ratio = mean("replay", "replay/samples_per_insert")) {
+  if (const auto ratio = mean("replay", metric::kSamplesPerInsert)) {
     append(fmt::format("{:.1f} samples per insert", *ratio));
   }
   return text.empty() ? "starting" : text;
@@ -133,11 +133,13 @@ CoreTime TrainingProgress::cores_of(const std::string& process) const {
 
 // Who waits for whom, what the cores do, and so what is the bottleneck.
 std::string TrainingProgress::waiting() const {
-  const auto for_actors = mean("learner", "time/wait_for_actors");
-  const auto for_weights = mean("actor", "time/wait_for_learner");
+  const auto for_actors = mean("learner", time_metric(TimePart::kWaitForActors));
+  const auto for_weights = mean("actor", time_metric(TimePart::kWaitForLearner));
   if (!for_actors || !for_weights) return "";
-  const double learner_for_replay = mean("learner", "time/wait_for_replay").value_or(0.0);
-  const double actors_for_replay = mean("actor", "time/wait_for_replay").value_or(0.0);
+  const double learner_for_replay =
+      mean("learner", time_metric(TimePart::kWaitForReplay)).value_or(0.0);
+  const double actors_for_replay =
+      mean("actor", time_metric(TimePart::kWaitForReplay)).value_or(0.0);
   const double for_replay = std::max(learner_for_replay, actors_for_replay);
 
   const CoreTime of_actors = cores_of("actor");

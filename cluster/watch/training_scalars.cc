@@ -18,20 +18,20 @@ struct Tag {
   const char* weight;  // the metric that the value is a mean over; may be empty
 };
 constexpr Tag kTags[] = {
-    {"actor", "charts/reward_per_1000", "train", "reward_per_1000_steps", ""},
-    {"actor", "charts/collisions_per_1000", "train", "collisions_per_1000_steps", ""},
-    {"actor", "charts/episodic_return", "train", "reward_per_episode", "charts/episodes"},
-    {"actor", "charts/epsilon", "train", "epsilon", ""},
-    {"learner", "losses/td_loss", "train", "loss", ""},
-    {"learner", "losses/q_values", "train", "q", ""},
-    {"learner", "losses/risk_values", "train", "risk", ""},
-    {"learner", "charts/learning_rate", "train", "learning_rate", ""},
-    {"learner", "charts/SPS", "train", "steps_per_second", ""},
-    {"learner", "eval/reward_per_1000", "selection", "reward_per_1000_steps", ""},
-    {"learner", "eval/collisions_per_1000", "selection", "collisions_per_1000_steps", ""},
-    {"learner", "eval/score", "selection", "score", ""},
-    {"replay", "replay/samples_per_insert", "train", "replay_ratio", ""},
-    {"replay", "replay/size", "train", "replay_size", ""},
+    {"actor", metric::kRewardPer1000, "train", "reward_per_1000_steps", ""},
+    {"actor", metric::kCollisionsPer1000, "train", "collisions_per_1000_steps", ""},
+    {"actor", metric::kEpisodicReturn, "train", "reward_per_episode", metric::kEpisodes},
+    {"actor", metric::kEpsilon, "train", "epsilon", ""},
+    {"learner", metric::kTdLoss, "train", "loss", ""},
+    {"learner", metric::kQValues, "train", "q", ""},
+    {"learner", metric::kRiskValues, "train", "risk", ""},
+    {"learner", metric::kLearningRate, "train", "learning_rate", ""},
+    {"learner", metric::kStepsPerS, "train", "steps_per_second", ""},
+    {"learner", metric::kGreedyRewardPer1000, "selection", "reward_per_1000_steps", ""},
+    {"learner", metric::kGreedyCollisionsPer1000, "selection", "collisions_per_1000_steps", ""},
+    {"learner", metric::kGreedyScore, "selection", "score", ""},
+    {"replay", metric::kSamplesPerInsert, "train", "replay_ratio", ""},
+    {"replay", metric::kReplaySize, "train", "replay_size", ""},
 };
 
 std::string full_name(const Tag& tag, const std::string& phase) {

@@ -21,6 +21,13 @@
 
 namespace corridor {
 
+inline constexpr const char* kLearnerFile = "learner.safetensors";
+inline constexpr const char* kReplayFile = "replay.safetensors";
+// Tensors that the replay writes and that a fingerprint needs.
+inline constexpr const char* kRowsTensor = "rows";         // of a file of rows
+inline constexpr const char* kLeavesTensor = "leaves";     // of kReplayFile: one a row held
+inline constexpr const char* kNextKeyTensor = "next_key";  // of kReplayFile: behind the newest row
+
 class Checkpoints {
  public:
   // `directory`: RunDirectory::checkpoints().
@@ -55,7 +62,7 @@ std::uint64_t checkpoint_round(const std::filesystem::path& checkpoint);
 // missing or damaged.
 TensorFile read_checkpoint_file(const std::filesystem::path& checkpoint, const std::string& name);
 
-// A file of rows: tensor "rows" [end_key - first_key, stride].
+// A file of rows: kRowsTensor [end_key - first_key, stride].
 struct RowsFile {
   std::uint64_t first_key = 0;
   std::uint64_t end_key = 0;

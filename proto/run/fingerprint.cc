@@ -26,21 +26,20 @@ void add(Hash& hash, const TensorFile& file) {
   }
 }
 
-// replay.safetensors with all of the rows.
+// kReplayFile with all of the rows.
 TensorFile whole_replay(const std::filesystem::path& checkpoint) {
-  constexpr const char* kFile = "replay.safetensors";
-  TensorFile replay = read_checkpoint_file(checkpoint, kFile);
+  TensorFile replay = read_checkpoint_file(checkpoint, kReplayFile);
   const auto first_of = [&](const char* tensor) {
-    return replay.get<std::uint64_t>(tensor, kFile).at(0);
+    return replay.get<std::uint64_t>(tensor, kReplayFile).at(0);
   };
-  const std::uint64_t next_key = first_of("next_key");
-  const std::uint64_t oldest_key = next_key - replay.get<float>("leaves", kFile).size();
+  const std::uint64_t next_key = first_of(kNextKeyTensor);
+  const std::uint64_t oldest_key = next_key - replay.get<float>(kLeavesTensor, kReplayFile).size();
   std::vector<float> rows;
   std::size_t stride = 0;
   for (const RowsFile& file : rows_files(checkpoint)) {
     const TensorFile part = read_checkpoint_file(checkpoint, file.name());
-    const auto& values = part.get<float>("rows", file.name());
-    stride = part.tensors.at("rows").shape.back();
+    const auto& values = part.get<float>(kRowsTensor, file.name());
+    stride = part.tensors.at(kRowsTensor).shape.back();
     const std::uint64_t given_way = oldest_key > file.first_key ? oldest_key - file.first_key : 0;
     const std::size_t skipped = std::min<std::size_t>(given_way * stride, values.size());
     rows.insert(rows.end(), values.begin() + static_cast<std::ptrdiff_t>(skipped), values.end());
@@ -49,7 +48,8 @@ TensorFile whole_replay(const std::filesystem::path& checkpoint) {
     throw Failure("{} is damaged: it has not all rows with the keys {} to {}", checkpoint.string(),
                   oldest_key, next_key);
   }
-  replay.tensors.insert_or_assign("rows", Tensor{{next_key - oldest_key, stride}, std::move(rows)});
+  replay.tensors.insert_or_assign(kRowsTensor,
+                                  Tensor{{next_key - oldest_key, stride}, std::move(rows)});
   return replay;
 }
 
@@ -74,7 +74,7 @@ std::string fingerprint(const TensorFile& learner, const TensorFile& replay) {
 }
 
 std::string fingerprint(const Checkpoint& checkpoint) {
-  return fingerprint(read_checkpoint_file(checkpoint.directory, "learner.safetensors"),
+  return fingerprint(read_checkpoint_file(checkpoint.directory, kLearnerFile),
                      whole_replay(checkpoint.directory));
 }
 

@@ -14,6 +14,33 @@
 
 namespace corridor {
 
+// What the processes of a training write and others read; the "time/" names stand in
+// proto/system/time_account.h. Over the steps since the process's last line, unless said otherwise.
+namespace metric {
+// An actor's, of the phase's planner as it explores.
+inline constexpr const char* kStepsPerS = "charts/SPS";  // the learner's too, of all actors
+inline constexpr const char* kRewardPer1000 = "charts/reward_per_1000";
+inline constexpr const char* kCollisionsPer1000 = "charts/collisions_per_1000";
+inline constexpr const char* kEpsilon = "charts/epsilon";
+inline constexpr const char* kEpisodicReturn = "charts/episodic_return";  // mean over kEpisodes
+inline constexpr const char* kEpisodes = "charts/episodes";               // that ended
+// The learner's.
+inline constexpr const char* kUpdates = "charts/updates";  // of the phase so far
+inline constexpr const char* kLearningRate = "charts/learning_rate";
+inline constexpr const char* kTdLoss = "losses/td_loss";  // this and the next two: of its batches
+inline constexpr const char* kQValues = "losses/q_values";
+inline constexpr const char* kRiskValues = "losses/risk_values";
+inline constexpr const char* kGreedyRewardPer1000 = "eval/reward_per_1000";  // of a selection
+inline constexpr const char* kGreedyCollisionsPer1000 = "eval/collisions_per_1000";
+inline constexpr const char* kGreedyScore = "eval/score";
+// The replay server's, of the phase so far.
+inline constexpr const char* kReplaySize = "replay/size";
+inline constexpr const char* kReplayInserted = "replay/inserted";
+inline constexpr const char* kReplaySampled = "replay/sampled";
+inline constexpr const char* kSamplesPerInsert = "replay/samples_per_insert";
+inline constexpr const char* kStalePriorities = "replay/stale_priorities";
+}  // namespace metric
+
 class MetricsWriter {
  public:
   // Appends. Throws Failure when the file cannot be opened.

@@ -9,8 +9,6 @@
 namespace corridor {
 namespace {
 
-constexpr const char* kCheckpointFile = "learner.safetensors";
-
 Networks networks_in(const TensorFile& tensors, const RunConfig& config, const std::string& file) {
   Networks networks;
   for (const NamedNetwork& network : kNetworks) {
@@ -44,8 +42,8 @@ void write_networks(const RunDirectory& directory, const Networks& networks) {
 std::optional<Networks> newest_networks(const RunDirectory& directory, const RunConfig& config) {
   const auto checkpoint = Checkpoints(directory.checkpoints()).newest();
   if (!checkpoint) return given_networks(directory, config);
-  return networks_in(read_checkpoint_file(*checkpoint, kCheckpointFile), config,
-                     (*checkpoint / kCheckpointFile).string());
+  return networks_in(read_checkpoint_file(*checkpoint, kLearnerFile), config,
+                     (*checkpoint / kLearnerFile).string());
 }
 
 }  // namespace corridor

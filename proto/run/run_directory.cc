@@ -17,6 +17,8 @@ void create_folders(const fs::path& root) {
 
 }  // namespace
 
+std::string actor_name(int index) { return fmt::format("actor-{}", index); }
+
 RunDirectory RunDirectory::create(const fs::path& root) {
   on_disk("create", root, [&] {
     if (fs::exists(root / "manifest.json")) {

@@ -20,7 +20,14 @@
 #include <string_view>
 #include <vector>
 
+#include "proto/settings/sumo_names.h"
+
 namespace corridor {
+
+// The processes of a training, as their logs and metrics files are called.
+inline constexpr const char* kLearnerName = "learner";
+inline constexpr const char* kReplayName = "replay";
+std::string actor_name(int index);  // "actor-0"
 
 class RunDirectory {
  public:
@@ -37,8 +44,8 @@ class RunDirectory {
   const std::filesystem::path& root() const { return root_; }
   std::filesystem::path config() const { return root_ / "config.toml"; }
   std::filesystem::path manifest() const { return root_ / "manifest.json"; }
-  std::filesystem::path network() const { return root_ / "sumo" / "road.net.xml"; }
-  std::filesystem::path routes() const { return root_ / "sumo" / "traffic.rou.xml"; }
+  std::filesystem::path network() const { return root_ / "sumo" / kSumoNetworkFile; }
+  std::filesystem::path routes() const { return root_ / "sumo" / kSumoRoutesFile; }
   std::filesystem::path log(std::string_view process) const;
   std::filesystem::path metrics(std::string_view process) const;
   std::filesystem::path networks() const { return root_ / "networks.safetensors"; }

@@ -37,6 +37,13 @@ inline constexpr std::size_t kTimeParts = 15;
 
 // "simulate", "wait_for_replay".
 const char* time_part_name(TimePart part);
+
+// What a process writes of its times, over a stretch of wall time (proto/run/metrics.h).
+std::string time_metric(TimePart part);  // "time/<part>": its share
+inline constexpr const char* kWallTimeMetric = "time/wall_s";
+inline constexpr const char* kCpuTimeMetric = "time/cpu_s";          // of the main thread
+inline constexpr const char* kIoCpuTimeMetric = "time/cpu_of_io_s";  // of all others, ZeroMQ's
+
 inline bool is_wait(TimePart part) { return part >= TimePart::kWaitForActors; }
 
 class TimeAccount {
@@ -52,9 +59,8 @@ class TimeAccount {
   // Since the last `take`, or since the start.
   double wall_s(TimePoint now = steady_now()) const { return in_seconds(now - taken_); }
 
-  // Over wall_s(): "time/<part>", its share of the wall time, of every part that was ever charged;
-  // "time/wall_s"; "time/cpu_s" of the calling thread and "time/cpu_of_io_s" of all others,
-  // ZeroMQ's.
+  // Over wall_s(): the share of every part that was ever charged, the wall time, and the processor
+  // time of the calling thread and of all others.
   std::vector<std::pair<std::string, double>> take(TimePoint now = steady_now());
 
  private:

@@ -18,7 +18,6 @@ namespace corridor::actor {
 namespace {
 
 using driving::Collision;
-using driving::CollisionKind;
 using driving::Scene;
 using driving::Vehicle;
 using testing::HasSubstr;
@@ -149,8 +148,8 @@ TEST_F(LookBack, AnEscapeThatIsFoundInSumoEscapesWhenDrivenAgain) {
   config_.simulation.episode_steps = 300;
   scenarios::write_sumo_files(config_, temporary_.path());
   TimeAccount time;
-  world::SumoWorld world(world::world_settings(config_), temporary_.path() / "road.net.xml",
-                         temporary_.path() / "traffic.rou.xml", time);
+  world::SumoWorld world(world::world_settings(config_), temporary_.path() / kSumoNetworkFile,
+                         temporary_.path() / kSumoRoutesFile, time);
   const RecordedEpisode episode = recorded(record_collision(config_, world));
   const Hindsight hindsight = look_back(config_, episode, world, {});
   const int actions = static_cast<int>(hindsight.searches.size());

@@ -27,8 +27,8 @@ struct SumoFiles {
 // SUMO with the paper's road.
 struct Place : SumoFiles {
   TimeAccount time;
-  world::SumoWorld world{world::world_settings(paper()), directory.path() / "road.net.xml",
-                         directory.path() / "traffic.rou.xml", time};
+  world::SumoWorld world{world::world_settings(paper()), directory.path() / kSumoNetworkFile,
+                         directory.path() / kSumoRoutesFile, time};
 };
 
 void BeginEpisode(benchmark::State& state) {
@@ -67,9 +67,12 @@ void Step(benchmark::State& state) {
   double steps_share = 0.0;
   std::map<std::string, double> shares;
   for (const auto& [name, share] : place.time.take()) shares[name] = share;
-  constexpr const char* kParts[] = {"simulate", "traffic", "world", "plan"};
-  for (const std::string part : kParts) steps_share += shares["time/" + part];
-  for (const std::string part : kParts) state.counters[part] = shares["time/" + part] / steps_share;
+  constexpr TimePart kParts[] = {TimePart::kSimulate, TimePart::kTraffic, TimePart::kWorld,
+                                 TimePart::kPlan};
+  for (const TimePart part : kParts) steps_share += shares[time_metric(part)];
+  for (const TimePart part : kParts) {
+    state.counters[time_part_name(part)] = shares[time_metric(part)] / steps_share;
+  }
 }
 BENCHMARK(Step)->Unit(benchmark::kMicrosecond)->Iterations(20'000);
 

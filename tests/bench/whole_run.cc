@@ -51,19 +51,19 @@ std::map<std::string, PhaseTime> phases_of(const RunDirectory& run, int actors) 
   const auto add = [&](const std::string& file, const std::string& process) {
     for (const MetricsLine& line : lines_of(run.metrics(file))) {
       PhaseTime& phase = phases[line.phase];
-      const double wall_s = value_of(line.values, "time/wall_s");
+      const double wall_s = value_of(line.values, kWallTimeMetric);
       for (const auto& [part, cores] : cluster::cores_by_part(line.values)) {
         phase.core_s[process + " " + part] += cores * wall_s;
       }
-      if (process != "learner") continue;
+      if (process != kLearnerName) continue;
       phase.wall_s += wall_s;
       phase.steps = static_cast<double>(line.step);
-      phase.updates = value_of(line.values, "charts/updates");
+      phase.updates = value_of(line.values, metric::kUpdates);
     }
   };
-  for (int i = 0; i < actors; ++i) add(fmt::format("actor-{}", i), "actor");
-  add("learner", "learner");
-  add("replay", "replay");
+  for (int i = 0; i < actors; ++i) add(actor_name(i), "actor");
+  add(kLearnerName, kLearnerName);
+  add(kReplayName, kReplayName);
   return phases;
 }
 
@@ -116,7 +116,8 @@ void print(const std::map<std::string, PhaseTime>& phases, const RunConfig& conf
 
 void print_memory(const RunDirectory& run) {
   std::printf("\npeak resident memory:");
-  for (const char* process : {"actor-0", "learner", "replay"}) {
+  for (const std::string& process :
+       {actor_name(0), std::string(kLearnerName), std::string(kReplayName)}) {
     const auto line = last_metrics_line(run.metrics(process));
     if (line) std::printf("  %s %.0f MB", process, value_of(line->values, "memory_mb"));
   }

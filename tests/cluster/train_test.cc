@@ -108,9 +108,9 @@ TEST_F(Training, OthersAreAppliedAndStay) {
 TEST_F(Training, ADamagedCheckpointIsNamedAndTheOneBeforeIsUsed) {
   const RunDirectory directory = make_run(run_, 5);
   const std::filesystem::path newer = Checkpoints(directory.checkpoints()).begin(7);
-  write_file(newer / "learner.safetensors", "state");
+  write_file(newer / kLearnerFile, "state");
   Checkpoints(directory.checkpoints()).commit(7, 2);
-  write_file(directory.checkpoints() / "7" / "learner.safetensors", "stale");
+  write_file(directory.checkpoints() / "7" / kLearnerFile, "stale");
   write_file(directory.root() / "config.toml.tmp-77", "half");
   testing::internal::CaptureStdout();
   EXPECT_THROW(resume({.run = run_}, "corridor"), Failure);  // see below
@@ -122,8 +122,8 @@ TEST_F(Training, ADamagedCheckpointIsNamedAndTheOneBeforeIsUsed) {
 
 TEST_F(Training, ResumeSaysWhereItGoesOnAndWhatItRepeats) {
   const RunDirectory directory = make_run(run_, 5);
-  write_file(directory.metrics("learner"), R"({"phase":"MoP","round":6,"step":3584})"
-                                           "\n");
+  write_file(directory.metrics(kLearnerName), R"({"phase":"MoP","round":6,"step":3584})"
+                                              "\n");
   // The checkpoint's files are made up: the programs, where they lie beside this test, refuse them.
   testing::internal::CaptureStdout();
   EXPECT_THROW(resume({.run = run_}, "corridor"), Failure);

@@ -212,10 +212,10 @@ TEST_F(BadInput, ADamagedNewestCheckpointIsNamedAndTheOneBeforeIsUsed) {
 TEST_F(BadInput, WhenEveryCheckpointIsDamagedResumeSaysSoAndChangesNothing) {
   ASSERT_EQ(run_command(train_command(run), kDeadline_s).status, 0);
   for (const auto& entry : fs::directory_iterator(run / "checkpoints")) {
-    damage(entry.path() / "learner.safetensors", 0);
+    damage(entry.path() / kLearnerFile, 0);
   }
   for (int attempt = 0; attempt < 2; ++attempt) {
-    expect_failure({kCorridor, "resume", run}, {"no checkpoint", "learner.safetensors"});
+    expect_failure({kCorridor, "resume", run}, {"no checkpoint", kLearnerFile});
   }
 }
 
@@ -230,8 +230,8 @@ TEST_F(BadInput, AnActorThatDiesAtStartEndsTheRunWithItsReason) {
   training.signal(SIGINT);
   ASSERT_EQ(training.finish(30.0).status, 130);
   // The network is gone when the actors look for it.
-  fs::remove(run / "sumo" / "road.net.xml");
-  expect_failure({kCorridor, "resume", run}, {"actor", "road.net.xml"});
+  fs::remove(run / "sumo" / kSumoNetworkFile);
+  expect_failure({kCorridor, "resume", run}, {"actor", kSumoNetworkFile});
 }
 
 TEST_F(BadInput, AProcessThatDiesAgainAndAgainEndsTheRunWithItsName) {

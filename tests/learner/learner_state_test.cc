@@ -39,7 +39,7 @@ LearnerState some_state(const RunConfig& config, Phase phase) {
 
 std::string failure_of(const TensorFile& file, const RunConfig& config) {
   try {
-    from_tensors(file, config, "learner.safetensors");
+    from_tensors(file, config, kLearnerFile);
   } catch (const Failure& failure) {
     return failure.what();
   }
@@ -104,7 +104,7 @@ TEST(Checkpoint, IsRefusedWhenSomethingIsMissing) {
                            "published.0.version", "published.1.mop", "best.score"}) {
     TensorFile file = whole;
     file.tensors.erase(name);
-    EXPECT_THAT(failure_of(file, config), HasSubstr("learner.safetensors")) << name;
+    EXPECT_THAT(failure_of(file, config), HasSubstr(kLearnerFile)) << name;
   }
   TensorFile file = whole;
   file.tensors.erase("published.1.version");  // then the newest weights are not those of the round

@@ -152,7 +152,7 @@ class SmallRun {
   }
 
   bool learn(const std::string& replay_address, Server& server) {
-    MetricsWriter metrics(directory_.metrics("learner"));
+    MetricsWriter metrics(directory_.metrics(kLearnerName));
     Publisher publisher(server, kActors);
     Client client(replay_address, "replay server", {kRunId, Role::kLearner, 0, fresh_incarnation()},
                   {});
@@ -173,7 +173,7 @@ class SmallRun {
     replay::ReplayService service(config_);
     if (const auto checkpoint = Checkpoints(directory_.checkpoints()).newest())
       service.load(*checkpoint);
-    MetricsWriter metrics(directory_.metrics("replay"));
+    MetricsWriter metrics(directory_.metrics(kReplayName));
     Server server(address, kRunId);
     replay::serve(server, service, metrics, config_, {[&] { return end_.load(); }});
   }

@@ -33,14 +33,14 @@ struct Place {
   TensorFile newest(const std::string& file) const { return read_checkpoint_file(newest(), file); }
   // The replay's, however its rows are divided among files.
   TensorFile replay() const {
-    TensorFile all = newest("replay.safetensors");
+    TensorFile all = newest(kReplayFile);
     std::vector<float> rows;
     for (const RowsFile& file : rows_files(newest())) {
       const TensorFile part = newest(file.name());
-      const auto& values = part.get<float>("rows", "replay");
+      const auto& values = part.get<float>(kRowsTensor, "replay");
       rows.insert(rows.end(), values.begin(), values.end());
     }
-    all.put("rows", std::move(rows));
+    all.put(kRowsTensor, std::move(rows));
     return all;
   }
   LearnerState state() const { return load_state(small_config(), directory); }
@@ -48,7 +48,7 @@ struct Place {
 
 void expect_same_end(const Place& a, const Place& b) {
   EXPECT_EQ(a.newest().filename(), b.newest().filename());
-  EXPECT_TRUE(a.newest("learner.safetensors") == b.newest("learner.safetensors"));
+  EXPECT_TRUE(a.newest(kLearnerFile) == b.newest(kLearnerFile));
   EXPECT_TRUE(a.replay() == b.replay());
 }
 
@@ -129,7 +129,7 @@ TEST(Training, FreezesTheBestMopForTheBpsPhase) {
   for (std::uint64_t version = kMopRounds; version <= 9; ++version) {
     EXPECT_EQ(run.weights.at(version).networks[Phase::kMop], expected) << version;
   }
-  EXPECT_EQ(place.newest("learner.safetensors").get<float>("mop", "file"), expected);
+  EXPECT_EQ(place.newest(kLearnerFile).get<float>("mop", "file"), expected);
 }
 
 // `value` is at least so much.
@@ -259,19 +259,19 @@ TEST(Training, DoesNothingMoreWhenAllIsDone) {
 TEST(Training, WritesMetricsWithTheSelectionsScore) {
   Place place;
   SmallRun(small_config(), place.directory).run();
-  std::ifstream file(place.directory.metrics("learner"));
+  std::ifstream file(place.directory.metrics(kLearnerName));
   std::string line;
   int scores = 0;
   while (std::getline(file, line)) {
     const Json values = Json::parse(line);
-    if (!values.contains("eval/score")) continue;
+    if (!values.contains(metric::kGreedyScore)) continue;
     ++scores;
     const auto round = values["round"].get<std::uint64_t>();
     const double reward =
         made_up_outcome(round, 0).reward + made_up_outcome(round, 1).reward;  // in 2000 steps
-    EXPECT_NEAR(values["eval/reward_per_1000"].get<double>(), reward / 2.0, 1e-9);
-    EXPECT_NEAR(values["eval/collisions_per_1000"].get<double>(), 0.5, 1e-9);
-    EXPECT_NEAR(values["eval/score"].get<double>(), reward / 2.0 - 25.0, 1e-9);
+    EXPECT_NEAR(values[metric::kGreedyRewardPer1000].get<double>(), reward / 2.0, 1e-9);
+    EXPECT_NEAR(values[metric::kGreedyCollisionsPer1000].get<double>(), 0.5, 1e-9);
+    EXPECT_NEAR(values[metric::kGreedyScore].get<double>(), reward / 2.0 - 25.0, 1e-9);
     EXPECT_EQ(values["phase"], round < kMopRounds ? "MoP" : "BP");
   }
   EXPECT_EQ(scores, 6);  // rounds 1, 3, 5 and 7, 9, 10
@@ -293,7 +293,7 @@ TEST(Training, RefusesAReplayServerAtAnotherRound) {
   Client client(address, "replay server", {kRunId, Role::kLearner, 0, 1}, {});
   TimeAccount time;
   ReplayClient replay(client, time, [] {});
-  MetricsWriter metrics(place.directory.metrics("learner"));
+  MetricsWriter metrics(place.directory.metrics(kLearnerName));
   Training training(small_config(),
                     {place.directory, replay, publisher, metrics, time, [] { return false; }},
                     place.state());

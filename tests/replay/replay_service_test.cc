@@ -112,13 +112,13 @@ class ReplayServiceTest : public testing::Test {
     std::size_t stride = 0;
     for (const RowsFile& file : rows_files(directory)) {
       const TensorFile part = read_checkpoint_file(directory, file.name());
-      const auto& values = part.get<float>("rows", file.name());
+      const auto& values = part.get<float>(kRowsTensor, file.name());
       rows.insert(rows.end(), values.begin(), values.end());
-      stride = part.tensors.at("rows").shape.at(1);
+      stride = part.tensors.at(kRowsTensor).shape.at(1);
     }
-    const std::size_t held = all.get<float>("leaves", kReplayFile).size();
+    const std::size_t held = all.get<float>(kLeavesTensor, kReplayFile).size();
     rows.erase(rows.begin(), rows.end() - static_cast<std::ptrdiff_t>(held * stride));
-    all.put("rows", std::move(rows));
+    all.put(kRowsTensor, std::move(rows));
     return all;
   }
 
@@ -221,8 +221,8 @@ TEST_F(ReplayServiceTest, GrantsTheAskedRatio) {
     }
     const Opened opened = open(service, round);
     granted += opened.batches;
-    EXPECT_EQ(figure(service, "replay/inserted"), inserted);
-    EXPECT_EQ(figure(service, "replay/size"), std::min<std::uint64_t>(inserted, 150));
+    EXPECT_EQ(figure(service, metric::kReplayInserted), inserted);
+    EXPECT_EQ(figure(service, metric::kReplaySize), std::min<std::uint64_t>(inserted, 150));
     EXPECT_EQ(granted, inserted < 70 ? 0 : (inserted - 69) * 2 / 8);
   }
 }
@@ -235,10 +235,10 @@ TEST_F(ReplayServiceTest, APhaseStartsAfreshButForItsKeys) {
   ASSERT_EQ(old_keys.size(), 8U);
   for (std::uint32_t index = 0; index < kActors; ++index) insert(service, kMopRounds, index);
   open(service, kMopRounds);
-  EXPECT_EQ(figure(service, "replay/inserted"), figure(service, "replay/size"));
-  EXPECT_LT(figure(service, "replay/size"), 80);
-  EXPECT_EQ(figure(service, "replay/sampled"), 0);
-  EXPECT_EQ(figure(service, "replay/stale_priorities"), 0);
+  EXPECT_EQ(figure(service, metric::kReplayInserted), figure(service, metric::kReplaySize));
+  EXPECT_LT(figure(service, metric::kReplaySize), 80);
+  EXPECT_EQ(figure(service, metric::kReplaySampled), 0);
+  EXPECT_EQ(figure(service, metric::kStalePriorities), 0);
 
   const Batch batch =
       batch_of(service.handle(kLearner, Step{old_keys, std::vector<float>(8, 1e9F), 8, 0.4}));
@@ -249,7 +249,7 @@ TEST_F(ReplayServiceTest, APhaseStartsAfreshButForItsKeys) {
   insert(service, kMopRounds + 1, 1);
   insert(service, kMopRounds + 1, 2);
   open(service, kMopRounds + 1);
-  EXPECT_EQ(figure(service, "replay/stale_priorities"), 8);
+  EXPECT_EQ(figure(service, metric::kStalePriorities), 8);
 }
 
 TEST_F(ReplayServiceTest, ARestartedActorGoesOnAfterItsLastChunkParkedOrNot) {

@@ -133,10 +133,12 @@ TEST_F(ServeTest, ClientsGetWhatTheServiceAloneWouldAnswer) {
   const Json line = Json::parse(file);
   EXPECT_EQ(line.at("round"), 31);
   EXPECT_EQ(line.at("step"), 32 * 20 * kActors);
-  EXPECT_EQ(line.at("replay/size"), 150);
-  for (const char* name : {"replay/inserted", "replay/sampled", "replay/samples_per_insert",
-                           "time/wait_for_actors", "time/wait_for_learner", "time/insert",
-                           "time/sample", "time/transport", "time/wall_s", "time/cpu_s"}) {
+  EXPECT_EQ(line.at(metric::kReplaySize), 150);
+  for (const char* name :
+       {metric::kReplayInserted, metric::kReplaySampled, metric::kSamplesPerInsert,
+        time_metric(TimePart::kWaitForActors), time_metric(TimePart::kWaitForLearner),
+        time_metric(TimePart::kInsert), time_metric(TimePart::kSample),
+        time_metric(TimePart::kTransport), kWallTimeMetric, kCpuTimeMetric}) {
     EXPECT_GT(line.at(name), 0.0) << name;
   }
 }

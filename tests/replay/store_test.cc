@@ -185,7 +185,7 @@ TEST(StoreTest, ARestoredStoreDrawsTheSameBits) {
   store.update(batch.keys, skewed_priorities(16));
   TensorFile file, rows;
   store.save(file);
-  rows.put("rows", store.rows_from(store.oldest_key()));
+  rows.put(kRowsTensor, store.rows_from(store.oldest_key()));
 
   Store restored = make_store(settings(64, 0.6, 1e-3));
   restored.load(file, "x");
@@ -210,7 +210,7 @@ TEST(StoreTest, ADamagedCheckpointIsAFailure) {
   store.save(good);
   const auto load = [&](const TensorFile& file) { make_store(settings(8)).load(file, "x"); };
   EXPECT_NO_THROW(load(good));
-  for (const char* name : {"leaves", "next_key", "first_key", "sampled"}) {
+  for (const char* name : {kLeavesTensor, kNextKeyTensor, "first_key", "sampled"}) {
     TensorFile damaged = good;
     damaged.tensors.erase(name);
     EXPECT_THROW(load(damaged), Failure) << name;
@@ -219,14 +219,14 @@ TEST(StoreTest, ADamagedCheckpointIsAFailure) {
   keys.put("first_key", std::vector<std::uint64_t>{4});
   EXPECT_THROW(load(keys), Failure);
   TensorFile leaves = good;
-  leaves.put("leaves", std::vector<float>{1.0F, std::nanf(""), 1.0F});
+  leaves.put(kLeavesTensor, std::vector<float>{1.0F, std::nanf(""), 1.0F});
   EXPECT_THROW(load(leaves), Failure);
   Store restored = make_store(settings(8));
   restored.load(good, "x");
   const std::vector<float> whole = store.rows_from(0);
   const auto load_rows = [&](std::uint64_t first_key, const std::vector<float>& values) {
     TensorFile rows;
-    rows.put("rows", values);
+    rows.put(kRowsTensor, values);
     restored.load_rows(first_key, rows, "x");
   };
   EXPECT_NO_THROW(load_rows(0, whole));

@@ -69,7 +69,7 @@ TEST_F(SumoFiles, GiveANetworkWithTheLanesSet) {
   config.road.length_m = 1234.5;
   config.road.speed_limit_mps = 20.5;
   write_sumo_files(config, directory_ / "a" / "b");
-  const std::string network = read_file(directory_ / "a" / "b" / "road.net.xml");
+  const std::string network = read_file(directory_ / "a" / "b" / kSumoNetworkFile);
   EXPECT_THAT(network, HasSubstr("<edge id=\"road\""));
   for (const char* lane : {"road_0", "road_1", "road_2", "road_3"}) {
     EXPECT_THAT(network, HasSubstr(fmt::format("<lane id=\"{}\"", lane)));

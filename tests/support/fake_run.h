@@ -27,18 +27,18 @@ inline RunDirectory make_fake_run(const std::filesystem::path& root, const RunCo
   write_file(directory.config(), text);
   write_file(directory.manifest(),
              cluster::describe_run("secret", config.run.seed, "scenarios/fake.toml", text).dump(2));
-  for (const char* name : {"actor-0", "actor-1"}) {
-    MetricsWriter writer(directory.metrics(name));
+  for (const int actor : {0, 1}) {
+    MetricsWriter writer(directory.metrics(actor_name(actor)));
     for (std::uint64_t line = 1; line <= 10; ++line) {
       writer.write("MoP", 8 * line - 1, static_cast<std::int64_t>(4096 * line),
-                   {{"charts/reward_per_1000", reward + static_cast<double>(line)},
-                    {"charts/collisions_per_1000", 2.0},
-                    {"charts/episodic_return", 40.0},
-                    {"charts/episodes", 3.0}});
+                   {{metric::kRewardPer1000, reward + static_cast<double>(line)},
+                    {metric::kCollisionsPer1000, 2.0},
+                    {metric::kEpisodicReturn, 40.0},
+                    {metric::kEpisodes, 3.0}});
     }
   }
-  MetricsWriter learner(directory.metrics("learner"));
-  learner.write("MoP", 7, 4096, {{"losses/td_loss", 0.25}, {"eval/reward_per_1000", 90.0}});
+  MetricsWriter learner(directory.metrics(kLearnerName));
+  learner.write("MoP", 7, 4096, {{metric::kTdLoss, 0.25}, {metric::kGreedyRewardPer1000, 90.0}});
   for (const char* planner : {"rules", "random+rules"}) {
     const Json episode = {{"steps", 1000},   {"bp_reward", 500.0}, {"mop_reward", 800.0},
                           {"collisions", 1}, {"lane_changes", 9},  {"hard_brakes", 2},

@@ -121,11 +121,12 @@ TEST(FindCollision, UsesTheLengthsAndWidthsOfBoth) {
   EXPECT_FALSE(collide(car, car));
 }
 
-TEST(CollisionKinds, HaveNames) {
-  EXPECT_STREQ(collision_kind_name(CollisionKind::kRearEnded), "rear_ended");
-  EXPECT_STREQ(collision_kind_name(CollisionKind::kRearEnding), "rear_ending");
-  EXPECT_STREQ(collision_kind_name(CollisionKind::kSideByOther), "side_by_other");
-  EXPECT_STREQ(collision_kind_name(CollisionKind::kSideByEgo), "side_by_ego");
+TEST(CollisionKinds, HaveTheNamesOfTheRecords) {
+  EXPECT_STREQ(name_of(CollisionKind::kRearEnded), "rear_ended");
+  EXPECT_STREQ(name_of(CollisionKind::kRearEnding), "rear_ending");
+  EXPECT_STREQ(name_of(CollisionKind::kSideByOther), "side_by_other");
+  EXPECT_STREQ(name_of(CollisionKind::kSideByEgo), "side_by_ego");
+  EXPECT_STREQ(name_of(CollisionKind::kOffRoad), "off_road");
 }
 
 // The ego with a yaw, against another one beside it.

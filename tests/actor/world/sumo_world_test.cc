@@ -31,8 +31,8 @@ class SumoWorldTest : public testing::Test {
  protected:
   SumoWorldTest() { scenarios::write_sumo_files(config_, directory_.path()); }
 
-  fs::path network() const { return directory_.path() / "road.net.xml"; }
-  fs::path types() const { return directory_.path() / "traffic.rou.xml"; }
+  fs::path network() const { return directory_.path() / kSumoNetworkFile; }
+  fs::path types() const { return directory_.path() / kSumoRoutesFile; }
   SumoWorld make() { return SumoWorld(world_settings(config_), network(), types(), time_); }
 
   // An ego that weaves over all lanes at changing speeds.
@@ -202,7 +202,7 @@ TEST_F(SumoWorldTest, ReportsTheEgosCollisionWithAStandingLeader) {
     scene = result.scene;
   }
   ASSERT_TRUE(collision);
-  EXPECT_EQ(collision->kind, driving::CollisionKind::kRearEnding);
+  EXPECT_EQ(collision->kind, CollisionKind::kRearEnding);
 }
 
 TEST_F(SumoWorldTest, DrivesTheEgoItselfFasterThanItsTrafficAndOverTheLanes) {

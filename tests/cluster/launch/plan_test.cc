@@ -30,7 +30,7 @@ TEST_F(Plan, TrainingIsOneReplayServerOneLearnerAndTheActorsInThisOrder) {
   EXPECT_THAT(plan[1].argv, ElementsAre("/bin/x/corridor-learner", root_));
   EXPECT_THAT(plan[2].argv, ElementsAre("/bin/x/corridor-actor", root_, "--index", "0"));
   EXPECT_THAT(plan[3].argv, ElementsAre("/bin/x/corridor-actor", root_, "--index", "1"));
-  EXPECT_EQ(plan[1].name, kLearner);
+  EXPECT_EQ(plan[1].name, kLearnerName);
 }
 
 TEST_F(Plan, EveryProcessHasANameAndALogOfItsOwn) {

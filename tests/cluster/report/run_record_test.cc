@@ -69,7 +69,7 @@ TEST_F(Records, OfWhatIsNoRunOrDamagedFailWithItsName) {
   write_file(directory.evaluation() / "sumo_1002.json", "{}");
   EXPECT_THAT([&] { read_run(root("run")); }, ThrowsMessage<Failure>(HasSubstr("sumo_1002.json")));
   std::filesystem::remove(directory.evaluation() / "sumo_1002.json");
-  std::ofstream(directory.metrics("learner"), std::ios::app) << "{\"phase\":3}\n";
+  std::ofstream(directory.metrics(kLearnerName), std::ios::app) << "{\"phase\":3}\n";
   EXPECT_THAT([&] { read_run(root("run")); }, ThrowsMessage<Failure>(HasSubstr("learner.jsonl:2")));
   std::filesystem::remove_all(root("run") / "metrics");
   EXPECT_THAT([&] { read_run(root("run")); }, ThrowsMessage<Failure>(HasSubstr("no metrics")));

@@ -21,8 +21,8 @@ RunRecord record(std::uint64_t seed, double reward) {
   RunRecord run;
   run.config.run.seed = seed;
   for (DqnSettings& dqn : run.config.dqn) dqn.steps = 25;  // moving average: 1 point
-  run.actors = {{line("MoP", 10, {{"charts/reward_per_1000", reward}}),
-                 line("MoP", 20, {{"charts/reward_per_1000", 2 * reward}})},
+  run.actors = {{line("MoP", 10, {{metric::kRewardPer1000, reward}}),
+                 line("MoP", 20, {{metric::kRewardPer1000, 2 * reward}})},
                 {}};
   run.learner = {{}};
   return run;
@@ -38,7 +38,7 @@ TEST(TrainingFigures, AreThoseForWhichThereAreNumbers) {
   RunRecord run = record(1, 10.0);
   EXPECT_THAT(names(training_figures({{"paper", {run}}})), ElementsAre("mop_training"));
   run.learner = {
-      {line("MoP", 10, {{"losses/td_loss", 1.0}}), line("BP", 10, {{"eval/score", 1.0}})}};
+      {line("MoP", 10, {{metric::kTdLoss, 1.0}}), line("BP", 10, {{metric::kGreedyScore, 1.0}})}};
   EXPECT_THAT(names(training_figures({{"paper", {run}}})),
               ElementsAre("mop_training", "mop_learning", "bp_selection"));
 }
@@ -57,10 +57,10 @@ TEST(TrainingFigures, ShowSeveralSeedsAsTheirMeanWithABand) {
 TEST(TrainingFigures, HaveTheLevelOfTheRulesThatFitsThePhase) {
   RunRecord run = record(1, 10.0);
   run.actors[1] = {line("BP", 10,
-                        {{"charts/reward_per_1000", 1.0},
-                         {"charts/collisions_per_1000", 1.0},
-                         {"charts/episodic_return", 1.0},
-                         {"charts/episodes", 1.0}})};
+                        {{metric::kRewardPer1000, 1.0},
+                         {metric::kCollisionsPer1000, 1.0},
+                         {metric::kEpisodicReturn, 1.0},
+                         {metric::kEpisodes, 1.0}})};
   EvaluationResult rules;
   rules.planner = "rules";
   rules.per_episode = {{1000, 500.0, 800.0, 2, 0, 0, 0.0, {}}};

@@ -11,10 +11,13 @@ using testing::DoubleNear;
 using testing::Pair;
 using testing::UnorderedElementsAre;
 
-const MetricsValues kLine = {{"charts/SPS", 900.0},    {"time/simulate", 0.6},
-                             {"time/world", 0.2},      {"time/wait_for_learner", 0.2},
-                             {"time/wall_s", 10.0},    {"time/cpu_s", 4.0},
-                             {"time/cpu_of_io_s", 1.0}};
+const MetricsValues kLine = {{metric::kStepsPerS, 900.0},
+                             {time_metric(TimePart::kSimulate), 0.6},
+                             {time_metric(TimePart::kWorld), 0.2},
+                             {time_metric(TimePart::kWaitForLearner), 0.2},
+                             {kWallTimeMetric, 10.0},
+                             {kCpuTimeMetric, 4.0},
+                             {kIoCpuTimeMetric, 1.0}};
 
 TEST(CoreTime, IsProcessorTimeInProportionToThePartsThatDoNotWait) {
   const CoreTime parts = cores_by_part(kLine);
@@ -26,7 +29,7 @@ TEST(CoreTime, IsProcessorTimeInProportionToThePartsThatDoNotWait) {
 
 TEST(CoreTime, IsEmptyWithoutTimes) {
   EXPECT_TRUE(cores_by_part({}).empty());
-  EXPECT_TRUE(cores_by_part({{"time/simulate", 1.0}}).empty());
+  EXPECT_TRUE(cores_by_part({{time_metric(TimePart::kSimulate), 1.0}}).empty());
 }
 
 TEST(CoreTime, NamesTheLargestPartsFirst) {

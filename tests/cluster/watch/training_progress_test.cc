@@ -28,8 +28,8 @@ TEST(MetricsLine, IsReadWithItsPlaceAndAllItsNumbers) {
   EXPECT_EQ(line->phase, "BP");
   EXPECT_EQ(line->round, 7u);
   EXPECT_EQ(line->step, 3584);
-  EXPECT_EQ(line->values,
-            (std::map<std::string, double, std::less<>>{{"time_s", 1.25}, {"charts/SPS", 7000.0}}));
+  EXPECT_EQ(line->values, (std::map<std::string, double, std::less<>>{
+                              {"time_s", 1.25}, {metric::kStepsPerS, 7000.0}}));
 }
 
 TEST(MetricsLine, IsNothingWhenTornOrForeign) {
@@ -147,16 +147,16 @@ TEST_F(Progress, AResumedTrainingBeginsWhereItsCheckpointIs) {
 
 TEST_F(Progress, AveragesOverTheActors) {
   progress_.on_actor(
-      line("MoP", 0, {{"charts/reward_per_1000", 500.0}, {"charts/collisions_per_1000", 2.0}}));
+      line("MoP", 0, {{metric::kRewardPer1000, 500.0}, {metric::kCollisionsPer1000, 2.0}}));
   progress_.on_actor(
-      line("MoP", 0, {{"charts/reward_per_1000", 700.0}, {"charts/collisions_per_1000", 1.0}}));
+      line("MoP", 0, {{metric::kRewardPer1000, 700.0}, {metric::kCollisionsPer1000, 1.0}}));
   EXPECT_THAT(progress_.details(), HasSubstr("reward 600, collisions 1.5 per 1000 steps"));
 }
 
 TEST_F(Progress, ForgetsTheFiguresOfThePhaseBefore) {
-  progress_.on_actor(line("MoP", 9, {{"charts/reward_per_1000", 500.0}}));
+  progress_.on_actor(line("MoP", 9, {{metric::kRewardPer1000, 500.0}}));
   progress_.on_learner(line("BP", 10), 1.0);
-  progress_.on_actor(line("MoP", 9, {{"charts/reward_per_1000", 500.0}}));
+  progress_.on_actor(line("MoP", 9, {{metric::kRewardPer1000, 500.0}}));
   EXPECT_THAT(progress_.details(), Not(HasSubstr("reward")));
 }
 
@@ -164,14 +164,15 @@ TEST_F(Progress, NamesTheSideThatTheOtherWaitsFor) {
   const auto lines = [&](double for_actors, double for_weights, double for_replay) {
     TrainingProgress progress(config(), 0, kCores, 0.0);
     EXPECT_EQ(progress.lines().size(), 2u);
-    progress.on_learner(
-        line("MoP", 0,
-             {{"time/wait_for_actors", for_actors}, {"time/wait_for_replay", for_replay}}),
-        1.0);
-    progress.on_replay(line("MoP", 0, {{"replay/samples_per_insert", 31.96}}));
-    progress.on_replay(line("BP", 0, {{"replay/samples_per_insert", 1.0}}));
-    progress.on_actor(
-        line("MoP", 0, {{"time/wait_for_learner", for_weights}, {"time/wait_for_replay", 0.01}}));
+    progress.on_learner(line("MoP", 0,
+                             {{time_metric(TimePart::kWaitForActors), for_actors},
+                              {time_metric(TimePart::kWaitForReplay), for_replay}}),
+                        1.0);
+    progress.on_replay(line("MoP", 0, {{metric::kSamplesPerInsert, 31.96}}));
+    progress.on_replay(line("BP", 0, {{metric::kSamplesPerInsert, 1.0}}));
+    progress.on_actor(line("MoP", 0,
+                           {{time_metric(TimePart::kWaitForLearner), for_weights},
+                            {time_metric(TimePart::kWaitForReplay), 0.01}}));
     return progress.lines();
   };
   EXPECT_THAT(lines(0.4, 0.03, 0.02),
@@ -187,19 +188,21 @@ TEST_F(Progress, NamesTheSideThatTheOtherWaitsFor) {
 
 TEST_F(Progress, NamesTheCoresWhenTheyAreBusyAndWhatTheyDo) {
   const auto times = [](const char* part, double share, double cpu_s, double for_others) {
-    return std::map<std::string, double, std::less<>>{{part, share},
-                                                      {"time/wait_for_learner", for_others},
-                                                      {"time/wait_for_actors", for_others},
-                                                      {"time/wall_s", 10.0},
-                                                      {"time/cpu_s", cpu_s},
-                                                      {"time/cpu_of_io_s", 0.0}};
+    return std::map<std::string, double, std::less<>>{
+        {part, share},
+        {time_metric(TimePart::kWaitForLearner), for_others},
+        {time_metric(TimePart::kWaitForActors), for_others},
+        {kWallTimeMetric, 10.0},
+        {kCpuTimeMetric, cpu_s},
+        {kIoCpuTimeMetric, 0.0}};
   };
   const int actors = config().run.actors;
   // Two cores, of which the actors keep `busy` and the learner half of one.
   const auto line_for = [&](double busy) {
     TrainingProgress progress(config(), 0, 2, 0.0);
-    progress.on_learner(line("MoP", 0, times("time/update", 0.8, 5.0, 0.2)), 1.0);
-    progress.on_actor(line("MoP", 0, times("time/simulate", 0.6, 10.0 * busy / actors, 0.4)));
+    progress.on_learner(line("MoP", 0, times(time_metric(TimePart::kUpdate), 0.8, 5.0, 0.2)), 1.0);
+    progress.on_actor(
+        line("MoP", 0, times(time_metric(TimePart::kSimulate), 0.6, 10.0 * busy / actors, 0.4)));
     return progress.lines().back();
   };
   EXPECT_THAT(line_for(1.5), HasSubstr("bottleneck: the 2 cores: simulate 75 %, update 25 %"));

@@ -20,8 +20,8 @@ TensorFile learner() {
 TensorFile replay() {
   TensorFile file;
   file.put("priorities", std::vector<double>{0.5, 0.25});
-  file.put("leaves", std::vector<float>{0.5F, 0.25F, 1.0F});
-  file.put("next_key", std::vector<std::uint64_t>{7});
+  file.put(kLeavesTensor, std::vector<float>{0.5F, 0.25F, 1.0F});
+  file.put(kNextKeyTensor, std::vector<std::uint64_t>{7});
   return file;
 }
 
@@ -57,15 +57,15 @@ TEST(NewestCheckpoint, IsNothingInANewRunAndTheLastCommittedOneLater) {
   std::vector<std::string> fingerprints;
   for (const std::uint64_t cut : {5, 6}) {
     const auto partial = checkpoints.begin(cut);
-    write_tensors(partial / "learner.safetensors", learner());
-    write_tensors(partial / "replay.safetensors", replay());
+    write_tensors(partial / kLearnerFile, learner());
+    write_tensors(partial / kReplayFile, replay());
     for (const RowsFile& file : {RowsFile{3, cut}, RowsFile{cut, 7}}) {
       std::vector<float> rows;
       for (auto key = file.first_key; key < file.end_key; ++key) {
         rows.insert(rows.end(), {static_cast<float>(key), 0.5F});
       }
       TensorFile part;
-      part.tensors.emplace("rows", Tensor{{rows.size() / 2, 2}, rows});
+      part.tensors.emplace(kRowsTensor, Tensor{{rows.size() / 2, 2}, rows});
       write_tensors(partial / file.name(), part);
     }
     checkpoints.commit(cut, 2);
@@ -76,12 +76,12 @@ TEST(NewestCheckpoint, IsNothingInANewRunAndTheLastCommittedOneLater) {
   }
   EXPECT_EQ(fingerprints[0], fingerprints[1]);
   TensorFile whole = replay();
-  whole.tensors.emplace("rows",
+  whole.tensors.emplace(kRowsTensor,
                         Tensor{{3, 2}, std::vector<float>{4.0F, 0.5F, 5.0F, 0.5F, 6.0F, 0.5F}});
   EXPECT_EQ(fingerprints[0], fingerprint(learner(), whole));
 
   const auto checkpoint = newest_checkpoint(directory);
-  std::filesystem::resize_file(checkpoint->directory / "replay.safetensors", 20);
+  std::filesystem::resize_file(checkpoint->directory / kReplayFile, 20);
   EXPECT_THROW(fingerprint(*checkpoint), Failure);
 }
 

@@ -31,7 +31,7 @@ class Metrics : public testing::Test {
 
 TEST_F(Metrics, AreOneObjectALineInTheOrderGiven) {
   MetricsWriter writer(file_);
-  writer.write("MoP", 7, 3584, {{"losses/td_loss", 0.1}, {"charts/SPS", 1e9}});
+  writer.write("MoP", 7, 3584, {{metric::kTdLoss, 0.1}, {metric::kStepsPerS, 1e9}});
   ASSERT_EQ(lines().size(), 1U);  // flushed already
   const auto line = lines()[0];
   std::vector<std::string> names;

@@ -43,7 +43,7 @@ TEST_F(NetworksTest, ARunHasNoneAtFirstThenThoseGivenThenThoseOfItsCheckpoint) {
   TensorFile learner;
   learner.put("mop", networks_of(0.25f)[NetworkId::kMop]);
   learner.put("bp", networks_of(0.25f)[NetworkId::kBp]);
-  write_tensors(checkpoints.begin(7) / "learner.safetensors", learner);
+  write_tensors(checkpoints.begin(7) / kLearnerFile, learner);
   checkpoints.commit(7, 2);
   EXPECT_EQ(newest_networks(directory_, config_), networks_of(0.25f));
   EXPECT_EQ(given_networks(directory_, config_), networks_of(0.5f));

@@ -24,11 +24,11 @@ TEST(TimeAccount, EveryMomentBelongsToTheNextCharge) {
   account.charge(TimePart::kSimulate, at(16));
   EXPECT_EQ(account.wall_s(at(16)), 6.0);
   const auto values = take(account, at(20));
-  EXPECT_EQ(values.at("time/wall_s"), 10.0);
-  EXPECT_EQ(values.at("time/simulate"), 0.3);
-  EXPECT_EQ(values.at("time/infer"), 0.3);
-  EXPECT_GT(values.at("time/cpu_s"), 0.0);
-  EXPECT_GE(values.at("time/cpu_of_io_s"), 0.0);
+  EXPECT_EQ(values.at(kWallTimeMetric), 10.0);
+  EXPECT_EQ(values.at(time_metric(TimePart::kSimulate)), 0.3);
+  EXPECT_EQ(values.at(time_metric(TimePart::kInfer)), 0.3);
+  EXPECT_GT(values.at(kCpuTimeMetric), 0.0);
+  EXPECT_GE(values.at(kIoCpuTimeMetric), 0.0);
 }
 
 TEST(TimeAccount, TakingBeginsAnewAndKeepsTheNames) {
@@ -37,10 +37,10 @@ TEST(TimeAccount, TakingBeginsAnewAndKeepsTheNames) {
   take(account, at(5));
   account.charge(TimePart::kPublish, at(7));
   const auto values = take(account, at(9));
-  EXPECT_EQ(values.at("time/wall_s"), 4.0);
-  EXPECT_EQ(values.at("time/update"), 0.0);
-  EXPECT_EQ(values.at("time/publish"), 0.5);
-  EXPECT_FALSE(values.contains("time/sample"));
+  EXPECT_EQ(values.at(kWallTimeMetric), 4.0);
+  EXPECT_EQ(values.at(time_metric(TimePart::kUpdate)), 0.0);
+  EXPECT_EQ(values.at(time_metric(TimePart::kPublish)), 0.5);
+  EXPECT_FALSE(values.contains(time_metric(TimePart::kSample)));
 }
 
 TEST(TimeAccount, GoesByTheMachinesClockUnlessTold) {
