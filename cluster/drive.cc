@@ -6,6 +6,7 @@
 
 #include "cluster/launch/traced_episode.h"
 #include "cluster/pictures/clip.h"
+#include "cluster/pictures/contact_sheet.h"
 #include "cluster/pictures/film.h"
 #include "cluster/pictures/player.h"
 #include "cluster/results/evaluation_result.h"
@@ -95,7 +96,7 @@ int drive(const DriveOptions& options) {
   on_disk("create", out, [&] { fs::create_directories(out); });
   const fs::path film = out / (name + ".mp4"), sheet = out / (name + ".png"),
                  player = out / (name + ".html");
-  write_contact_sheet(clips, options.interval_s, sheet);
+  write_file(sheet, contact_sheet(clips, options.interval_s).png());
   write_file(player, player_page(clips));
   int shown = -1;
   write_film(clips, film, [&](double share) {

@@ -10,6 +10,7 @@
 #include "cluster/launch/plan.h"
 #include "cluster/results/evaluation_result.h"
 #include "cluster/results/results_tables.h"
+#include "cluster/watch/display.h"
 #include "cluster/watch/line_tail.h"
 #include "cluster/watch/step_progress.h"
 #include "proto/base/failure.h"
@@ -81,8 +82,8 @@ int evaluate(const EvaluateOptions& options) {
     tasks.push_back({fmt::format("{} {}", job.planner, job.seed), job.steps, 0, plan.back().log,
                      parse_step_count});
   }
-  StepProgress progress("evaluation", std::move(tasks));
-  const Ending ending = run_queue(plan, parallel, Limits{}, [&] { progress.tick(); });
+  StepProgress progress("evaluation", std::move(tasks), monotonic_s());
+  const Ending ending = run_queue(plan, parallel, Limits{}, [&] { progress.tick(monotonic_s()); });
   if (ending.signal != 0) {
     fmt::print("stopped: no table\n");
     return 128 + ending.signal;

@@ -10,6 +10,7 @@
 #include "cluster/launch/plan.h"
 #include "cluster/results/evaluation_result.h"
 #include "cluster/results/results_tables.h"
+#include "cluster/watch/display.h"
 #include "cluster/watch/line_tail.h"
 #include "cluster/watch/step_progress.h"
 #include "proto/base/failure.h"
@@ -156,10 +157,10 @@ int train_all(const std::vector<Run>& runs, const fs::path& directory, int cores
   }
   Limits limits;
   limits.others = Milliseconds(10'000);  // each of them ends processes of its own
-  StepProgress progress("training", std::move(tasks));
+  StepProgress progress("training", std::move(tasks), monotonic_s());
   for (const auto& queue : {plan, later}) {
-    const Ending ending =
-        run_queue(queue, std::max(1, cores / kCoresPerTraining), limits, [&] { progress.tick(); });
+    const Ending ending = run_queue(queue, std::max(1, cores / kCoresPerTraining), limits,
+                                    [&] { progress.tick(monotonic_s()); });
     if (ending.signal != 0) return ending.signal;
   }
   return 0;
@@ -187,8 +188,8 @@ int evaluate_all(const std::vector<Evaluation>& evaluations, const fs::path& dir
     process.log = log;
     plan.push_back(std::move(process));
   }
-  StepProgress progress("evaluation", std::move(tasks));
-  return run_queue(plan, cores, Limits{}, [&] { progress.tick(); }).signal;
+  StepProgress progress("evaluation", std::move(tasks), monotonic_s());
+  return run_queue(plan, cores, Limits{}, [&] { progress.tick(monotonic_s()); }).signal;
 }
 
 // All results of one training in one scenario.

@@ -5,6 +5,7 @@
 #include "cluster/launch/plan.h"
 #include "cluster/results/evaluation_result.h"
 #include "cluster/results/hindsight_result.h"
+#include "cluster/watch/display.h"
 #include "cluster/watch/line_tail.h"
 #include "cluster/watch/step_progress.h"
 #include "proto/base/failure.h"
@@ -43,8 +44,8 @@ int hindsight(const HindsightOptions& options) {
     tasks.push_back({fmt::format("{} {}", job.planner, job.seed), evaluations.back().collisions, 0,
                      plan.back().log, parse_step_count});
   }
-  StepProgress progress("hindsight", std::move(tasks), "collisions");
-  const Ending ending = run_queue(plan, parallel, Limits{}, [&] { progress.tick(); });
+  StepProgress progress("hindsight", std::move(tasks), monotonic_s(), "collisions");
+  const Ending ending = run_queue(plan, parallel, Limits{}, [&] { progress.tick(monotonic_s()); });
   if (ending.signal != 0) {
     fmt::print("stopped: no table\n");
     return 128 + ending.signal;

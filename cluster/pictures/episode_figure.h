@@ -1,11 +1,11 @@
-// Driven episodes of one arm -> a gnuplot script. Pure.
+// Driven episodes of one arm as a figure. Pure.
 #pragma once
 
 #include <cstddef>
 #include <optional>
 #include <string>
 
-#include "cluster/pictures/gnuplot_script.h"
+#include "cluster/pictures/canvas.h"
 #include "proto/run/episode_trace.h"
 
 namespace corridor::cluster {
@@ -27,7 +27,7 @@ struct EpisodeFigure {
 
 // Of the typical episode lateral position and speed over time; of the failed one the road from
 // above at its last instants.
-std::string gnuplot_script(const EpisodeFigure& figure, PictureFormat format);
+Canvas picture_of(const EpisodeFigure& figure);
 
 // What the picture shows, for people.
 std::string caption_of(const EpisodeFigure& figure);

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <set>
 
-#include "proto/base/format.h"
+#include "cluster/pictures/palette.h"
 #include "proto/base/text.h"
 
 namespace corridor::cluster {
@@ -11,7 +11,27 @@ namespace {
 
 constexpr int kPanelWidth = 380, kHeight = 350;  // pixels
 
-const char* colour(std::size_t curve) { return kColours[curve % kColours.size()]; }
+Colour colour(std::size_t curve) { return kCurves[curve % kCurves.size()]; }
+
+// Text, as gnuplot takes it as it is: in single quotes, since in double ones it runs `commands`.
+std::string literal(const std::string& text) {
+  std::string result = "'";
+  for (const char c : text) {
+    if (c == '\'') result += '\'';
+    result += c == '\n' ? ' ' : c;
+  }
+  return result + "'";
+}
+
+std::string terminal_script(const std::string& name, int width, PictureFormat format) {
+  if (format == PictureFormat::kSvg) {
+    return fmt::format(
+        "set terminal svg size {},{} dynamic name {} font 'Helvetica,Arial,sans-serif,13'\n", width,
+        kHeight, literal(name));
+  }
+  return fmt::format("set terminal pngcairo size {},{} font 'sans,10' fontscale 2 linewidth 2\n",
+                     2 * width, 2 * kHeight);
+}
 
 // The steps of one panel's curves as data blocks, in thousands.
 std::string data_blocks(const Panel& panel, std::size_t number) {
@@ -57,26 +77,27 @@ std::vector<Plot> plots_of(const Figure& figure, const Panel& panel, std::size_t
     const PlottedCurve& curve = panel.curves[i];
     const std::string trend = fmt::format("$trend_{}_{}", number, i);
     if (has_band(curve.trend)) {
-      bands.push_back(
-          {trend + " using 1:3:4",
-           fmt::format("filledcurves fc rgb '#{}' fs transparent solid 0.25 noborder", colour(i)),
-           legend(figure, i, "lowest to highest")});
+      bands.push_back({trend + " using 1:3:4",
+                       fmt::format("filledcurves fc rgb '{}' fs transparent solid 0.25 noborder",
+                                   hexadecimal(colour(i))),
+                       legend(figure, i, "lowest to highest")});
     }
     if (!curve.raw.empty()) {
       raw.push_back({fmt::format("$raw_{}_{} using 1:2", number, i),
-                     fmt::format("lines lw 0.7 lc rgb '#a0{}'", colour(i)),
+                     fmt::format("lines lw 0.7 lc rgb '#a0{:06x}'", colour(i)),
                      legend(figure, i, "as measured")});
     }
     if (!curve.trend.empty()) {
-      trends.push_back({trend + " using 1:2",
-                        fmt::format("{} lw 2.2 lc rgb '#{}'",
-                                    figure.points ? "linespoints pt 7 ps 0.6" : "lines", colour(i)),
-                        legend(figure, i, figure.trend)});
+      trends.push_back(
+          {trend + " using 1:2",
+           fmt::format("{} lw 2.2 lc rgb '{}'", figure.points ? "linespoints pt 7 ps 0.6" : "lines",
+                       hexadecimal(colour(i))),
+           legend(figure, i, figure.trend)});
     }
     if (curve.level) {
       levels.push_back({fmt::format("{:.6g}", *curve.level),
-                        fmt::format("lines lw 1.6 dt (8,5) lc rgb '#{}'",
-                                    figure.labels.size() == 1 ? kInk : colour(i)),
+                        fmt::format("lines lw 1.6 dt (8,5) lc rgb '{}'",
+                                    hexadecimal(figure.labels.size() == 1 ? kInk : colour(i))),
                         legend(figure, i, figure.level)});
     }
   }
@@ -97,9 +118,9 @@ std::string panel_script(const Figure& figure, std::size_t number) {
   for (const Plot& plot : plots_of(figure, panel, number)) {
     items.push_back(plot.data + " with " + plot.style + " notitle");
   }
-  return fmt::format("set title {} textcolor rgb '#{}'\n", literal(panel.title), kInk) +
-         fmt::format("set ylabel {} textcolor rgb '#{}' offset 0.5,0\n", literal(panel.unit),
-                     kInk) +
+  return fmt::format("set title {} textcolor rgb '{}'\n", literal(panel.title), hexadecimal(kInk)) +
+         fmt::format("set ylabel {} textcolor rgb '{}' offset 0.5,0\n", literal(panel.unit),
+                     hexadecimal(kInk)) +
          plot_command(items);
 }
 
@@ -120,8 +141,8 @@ std::string legend_script(const Figure& figure) {
          "unset border\nunset tics\nunset grid\nunset title\nunset xlabel\nunset ylabel\n"
          "set xrange [0:1]\nset yrange [0:1]\n" +
          fmt::format(
-             "set key center center horizontal Left reverse samplen 2.5 textcolor rgb '#{}'\n",
-             kInk) +
+             "set key center center horizontal Left reverse samplen 2.5 textcolor rgb '{}'\n",
+             hexadecimal(kInk)) +
          plot_command(items);
 }
 
@@ -129,21 +150,22 @@ std::string legend_script(const Figure& figure) {
 
 std::string gnuplot_script(const Figure& figure, PictureFormat format) {
   const int width = kPanelWidth * static_cast<int>(figure.panels.size());
-  std::string script = terminal_script(figure.name, width, kHeight, format);
+  std::string script = terminal_script(figure.name, width, format);
   for (std::size_t i = 0; i < figure.panels.size(); ++i) {
     script += data_blocks(figure.panels[i], i);
   }
   const auto panels = static_cast<double>(figure.panels.size());
   script += fmt::format(
       "set termoption noenhanced\n"
-      "set border 3 lc rgb '#{0}'\n"
-      "set tics nomirror out scale 0.6 textcolor rgb '#{0}'\n"
-      "set grid ytics lt 1 lc rgb '#e4e4e4' lw 0.7\n"
-      "set xlabel 'environment steps, thousands' textcolor rgb '#{0}'\n"
+      "set border 3 lc rgb '{0}'\n"
+      "set tics nomirror out scale 0.6 textcolor rgb '{0}'\n"
+      "set grid ytics lt 1 lc rgb '{1}' lw 0.7\n"
+      "set xlabel 'environment steps, thousands' textcolor rgb '{0}'\n"
       "set xrange [0:*] noextend\n"
       "set yrange [*<0:*]\n"
-      "set multiplot layout 1,{1} margins {2:.4f},{3:.4f},0.29,0.88 spacing {4:.4f},0\n",
-      kInk, figure.panels.size(), 0.24 / panels, 1.0 - 0.06 / panels, 0.28 / panels);
+      "set multiplot layout 1,{2} margins {3:.4f},{4:.4f},0.29,0.88 spacing {5:.4f},0\n",
+      hexadecimal(kInk), hexadecimal(kGrid), figure.panels.size(), 0.24 / panels,
+      1.0 - 0.06 / panels, 0.28 / panels);
   for (std::size_t i = 0; i < figure.panels.size(); ++i) script += panel_script(figure, i);
   return script + legend_script(figure) + "unset multiplot\n";
 }

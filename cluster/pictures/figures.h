@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "cluster/pictures/gnuplot_script.h"
 #include "cluster/results/training_curves.h"
 
 namespace corridor::cluster {
@@ -33,7 +32,10 @@ struct Figure {
   std::vector<Panel> panels;        // side by side
 };
 
-// Draws the figure to standard output; the legend stands below the panels.
+enum class PictureFormat { kSvg, kPng };
+
+// Draws the figure to standard output; the legend stands below the panels. PNG is twice as large,
+// for print.
 std::string gnuplot_script(const Figure& figure, PictureFormat format);
 
 }  // namespace corridor::cluster

@@ -9,7 +9,7 @@ constexpr const char* kStyle = R"(
 body { max-width: 72rem; margin: 2rem auto; padding: 0 1rem; color: #222;
        font: 15px/1.45 Helvetica, Arial, sans-serif; }
 h1 { font-size: 1.6rem; } h2 { font-size: 1.25rem; margin-top: 2.2rem; } h3 { font-size: 1.05rem; }
-figure { margin: 1.2rem 0; } figure svg { width: 100%; height: auto; }
+figure { margin: 1.2rem 0; } figure > svg { width: 100%; height: auto; }
 figcaption, .note { color: #555; font-size: 0.9rem; }
 .table { overflow-x: auto; margin: 1rem 0; }
 table { border-collapse: collapse; font-size: 0.9rem; font-variant-numeric: tabular-nums; }

@@ -11,6 +11,11 @@
 #include "proto/system/files.h"
 
 namespace corridor::cluster {
+namespace {
+
+constexpr double kPrintScale = 2.0;
+
+}  // namespace
 
 int report(const ReportOptions& options) {
   std::vector<RunRecord> runs;
@@ -18,19 +23,20 @@ int report(const ReportOptions& options) {
   const std::vector<RunGroup> groups = grouped_runs(std::move(runs));
 
   std::vector<std::pair<std::string, std::string>> files;  // name, content
-  const auto drawn = [&](const auto& figure, const std::string& name, const std::string& caption) {
-    const std::string svg = run_gnuplot(gnuplot_script(figure, PictureFormat::kSvg));
-    files.emplace_back(name + ".svg", svg);
-    files.emplace_back(name + ".png", run_gnuplot(gnuplot_script(figure, PictureFormat::kPng)));
-    return DrawnFigure{caption, svg};
-  };
   std::vector<DrawnFigure> training, episodes;
   for (const Figure& figure : training_figures(groups)) {
-    training.push_back(drawn(figure, figure.name, figure.caption));
+    const std::string svg = run_gnuplot(gnuplot_script(figure, PictureFormat::kSvg));
+    files.emplace_back(figure.name + ".svg", svg);
+    files.emplace_back(figure.name + ".png",
+                       run_gnuplot(gnuplot_script(figure, PictureFormat::kPng)));
+    training.push_back({figure.caption, svg});
   }
   const ReportedEpisodes driven = report_episodes(groups);
   for (const EpisodeFigure& figure : driven.figures) {
-    episodes.push_back(drawn(figure, "episodes_" + figure.planner, caption_of(figure)));
+    const Canvas picture = picture_of(figure);
+    files.emplace_back("episodes_" + figure.planner + ".svg", picture.svg());
+    files.emplace_back("episodes_" + figure.planner + ".png", picture.png(kPrintScale));
+    episodes.push_back({caption_of(figure), picture.svg()});
   }
   const std::size_t figures = files.size() / 2;
   files.emplace_back("report.html", report_page(groups, training, episodes));

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdio>
 
 #include "proto/base/format.h"
 
@@ -14,9 +13,9 @@ namespace {
 
 constexpr double kPlainInterval_s = 10.0;
 
-int terminal_columns() {
+int terminal_columns(std::FILE* out) {
   winsize size{};
-  return ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
+  return ioctl(fileno(out), TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
 }
 
 }  // namespace
@@ -31,35 +30,38 @@ std::string progress_bar(double done, int width) {
                      std::string(static_cast<std::size_t>(width - filled), '.'));
 }
 
-ProgressDisplay::ProgressDisplay() : terminal_(isatty(STDOUT_FILENO) == 1) {}
+ProgressDisplay::ProgressDisplay(std::FILE* out) : out_(out), terminal_(isatty(fileno(out)) == 1) {}
 
-ProgressDisplay::~ProgressDisplay() { std::fflush(stdout); }
+ProgressDisplay::~ProgressDisplay() { std::fflush(out_); }
 
 bool ProgressDisplay::due(double now_s) const {
   return terminal_ || !last_s_ || now_s - *last_s_ >= kPlainInterval_s;
 }
 
-void ProgressDisplay::announce(const std::string& line) {
-  if (shown_ > 0) fmt::print("\x1b[{}F\x1b[J", shown_);
+// Back to the first of the lines that stand there, and clear from there on.
+void ProgressDisplay::clear() {
+  if (shown_ > 0) fmt::print(out_, "\x1b[{}F\x1b[J", shown_);
   shown_ = 0;
-  fmt::print("{}\n", line);
-  std::fflush(stdout);
+}
+
+void ProgressDisplay::announce(const std::string& line) {
+  clear();
+  fmt::print(out_, "{}\n", line);
+  std::fflush(out_);
 }
 
 void ProgressDisplay::show(const std::vector<std::string>& lines, double now_s) {
   if (!due(now_s)) return;
   last_s_ = now_s;
-  if (terminal_) {
-    // Back to the first of the lines that stand there, and clear from there on. A line that wrapped
-    // could not be counted, so none may.
-    if (shown_ > 0) fmt::print("\x1b[{}F\x1b[J", shown_);
-    const auto columns = static_cast<std::size_t>(terminal_columns() - 1);
-    for (const std::string& line : lines) fmt::print("{}\n", line.substr(0, columns));
-    shown_ = lines.size();
-  } else {
-    for (const std::string& line : lines) fmt::print("{}\n", line);
+  clear();
+  for (const std::string& line : lines) {
+    // One that wrapped could not be counted.
+    const std::size_t columns =
+        terminal_ ? static_cast<std::size_t>(terminal_columns(out_) - 1) : line.size();
+    fmt::print(out_, "{}\n", line.substr(0, columns));
   }
-  std::fflush(stdout);
+  if (terminal_) shown_ = lines.size();
+  std::fflush(out_);
 }
 
 }  // namespace corridor::cluster

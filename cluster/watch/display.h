@@ -1,18 +1,19 @@
-// Progress for people: on a terminal lines that are written over again, else lines now and then.
+// Where progress for people goes.
 #pragma once
 
+#include <cstdio>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace corridor::cluster {
 
-// Where progress goes: on a terminal the lines are written over again, in a pipe or file they
-// follow each other, every ten seconds.
+// On a terminal the lines are written over again, in a pipe or file they follow each other, every
+// ten seconds.
 class ProgressDisplay {
  public:
-  // Looks at standard output.
-  ProgressDisplay();
+  // `out` outlives it.
+  explicit ProgressDisplay(std::FILE* out = stdout);
   // Leaves the last lines standing.
   ~ProgressDisplay();
   ProgressDisplay(const ProgressDisplay&) = delete;
@@ -25,6 +26,9 @@ class ProgressDisplay {
   void announce(const std::string& line);
 
  private:
+  void clear();
+
+  std::FILE* out_;
   bool terminal_;
   std::size_t shown_ = 0;  // lines standing on the terminal
   std::optional<double> last_s_;

@@ -1,4 +1,4 @@
-// What other processes append to text files, line by line, as it comes.
+// What other processes append to a text file, line by line, as it comes.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace corridor::cluster {
 
-// What is appended to a text file, line by line. The file may come later.
+// The file may come later.
 class LineTail {
  public:
   // Begins at the file's present end.

@@ -3,15 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cluster/watch/display.h"
-#include "cluster/watch/line_tail.h"
 #include "proto/base/format.h"
 #include "proto/base/text.h"
 
 namespace corridor::cluster {
 
-StepProgress::StepProgress(std::string title, std::vector<StepTask> tasks, std::string unit)
-    : title_(std::move(title)), unit_(std::move(unit)), start_s_(monotonic_s()) {
+StepProgress::StepProgress(std::string title, std::vector<StepTask> tasks, double now_s,
+                           std::string unit)
+    : title_(std::move(title)), unit_(std::move(unit)), start_s_(now_s) {
   for (StepTask& task : tasks) {
     done_at_start_ += task.done;
     LineTail tail(task.file);
@@ -19,13 +18,12 @@ StepProgress::StepProgress(std::string title, std::vector<StepTask> tasks, std::
   }
 }
 
-void StepProgress::tick() {
+void StepProgress::tick(double now_s) {
   for (auto& [task, tail] : tasks_) {
     for (const std::string& line : tail.read()) {
       if (const auto done = task.steps_done(line)) task.done = std::min(*done, task.steps);
     }
   }
-  const double now_s = monotonic_s();
   if (display_.due(now_s)) display_.show({headline(now_s), details()}, now_s);
 }
 

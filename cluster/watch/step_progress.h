@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <optional>
 #include <string>
@@ -22,13 +23,15 @@ struct StepTask {
   std::function<std::optional<std::int64_t>(std::string_view line)> steps_done;
 };
 
+// Time comes from the caller.
 class StepProgress {
  public:
   // `unit`: what is counted, if not steps.
-  StepProgress(std::string title, std::vector<StepTask> tasks, std::string unit = "steps");
+  StepProgress(std::string title, std::vector<StepTask> tasks, double now_s,
+               std::string unit = "steps");
 
   // Reads what is new and shows it, when that would be seen.
-  void tick();
+  void tick(double now_s);
 
   // "evaluation [###....]  43.1 %  51,724 of 120,000 steps  7,012 steps/s  10 s left"
   std::string headline(double now_s) const;

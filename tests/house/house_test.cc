@@ -144,7 +144,7 @@ TEST(House, EachForeignLibraryIsUsedByItsAdapterOnly) {
       {{"CLI/"}, {"proto/system/command_line.h"}},
       {{"ode/"}, {"actor/vehicle/ode_vehicle.cc"}},
       {{"webots/"}, {"actor/vehicle/webots_vehicle.h"}},
-      {{"cairo"}, {"cluster/pictures/film.cc"}},
+      {{"cairo"}, {"cluster/pictures/canvas.cc"}},
   };
   for (const std::string& file : sources()) {
     for (const std::string& include : includes_of(file)) {

@@ -3,83 +3,60 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "cluster/pictures/gnuplot.h"
+#include "tests/support/driven.h"
 
 namespace corridor::cluster {
 namespace {
 
+using testing::AllOf;
+using testing::Contains;
 using testing::HasSubstr;
+using testing::IsSupersetOf;
 using testing::Not;
-using testing::StartsWith;
+using testing_support::areas;
+using testing_support::drawn;
+using testing_support::driven_episode;
+using testing_support::texts;
 
-// At 10 m/s in the middle lane, one vehicle 20 m ahead and one out of the picture.
-DrivenEpisode episode(std::size_t steps, std::optional<TracedCollision> collision = {}) {
-  EpisodeTrace trace;
-  trace.step_s = 1.0;
-  trace.lanes = 3;
-  trace.lane_width_m = 3.2;
-  trace.speed_limit_mps = 13.89;
-  trace.bp_reward = 500.0;
-  trace.lane_changes = 7;
-  trace.collision = std::move(collision);
-  for (std::size_t i = 0; i < steps; ++i) {
-    const double s_m = 10.0 * static_cast<double>(i);
-    trace.steps.push_back(
-        {{0, s_m, 4.8, 10.0, 5.0, 1.8},
-         1,
-         {{8, s_m + 20.0, 1.6, 12.5, 5.0, 1.8}, {9, s_m + 80.0, 1.6, 25.0, 5.0, 1.8}}});
-  }
-  return {"rules+mop_1002_3", trace};
-}
-
-std::size_t count(const std::string& text, const std::string& part) {
-  std::size_t number = 0;
-  for (auto at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++number;
-  return number;
-}
+DrivenEpisode episode(std::size_t steps) { return {"rules+mop_1002_3", driven_episode(steps)}; }
 
 TEST(EpisodeFigure, ShowsTheTypicalEpisodeOverTime) {
-  const std::string script =
-      gnuplot_script({"rules", episode(100), std::nullopt}, PictureFormat::kSvg);
-  EXPECT_THAT(script, HasSubstr("\n99 4.8\n"));
-  EXPECT_THAT(script, HasSubstr("\n99 36\n"));
-  EXPECT_THAT(script, HasSubstr("set xrange [0:99]"));
-  EXPECT_THAT(script, HasSubstr("'rules, a typical episode'"));
-  EXPECT_THAT(script, Not(HasSubstr("collision")));
+  const Canvas picture = picture_of({"rules", episode(101), std::nullopt});
+  EXPECT_THAT(texts(picture), IsSupersetOf({"rules, a typical episode", "right lane", "left lane",
+                                            "km/h", "time, s", "0", "10", "50", "90", "100"}));
+  EXPECT_THAT(texts(picture), Not(Contains(HasSubstr("collision"))));
+  std::vector<Line> curves = drawn<Line>(picture.shapes);
+  std::erase_if(curves, [](const Line& line) { return line.points.size() != 101; });
+  ASSERT_EQ(curves.size(), 2u) << "place across the road, and speed";
+  EXPECT_EQ(curves[0].points.front().x, curves[1].points.front().x);
 }
 
 TEST(EpisodeFigure, ShowsTheLastInstantsBeforeACollisionFromAbove) {
-  const std::string script = gnuplot_script(
-      {"rules", std::nullopt, episode(30, TracedCollision{"rear_ending", 8})}, PictureFormat::kSvg);
-  EXPECT_THAT(script, HasSubstr("'5 s before'"));
-  EXPECT_THAT(script, HasSubstr("'1 s before'"));
-  EXPECT_THAT(script, Not(HasSubstr("'6 s before'")));
-  EXPECT_EQ(count(script, "'collision'"), 1u);
-  EXPECT_EQ(count(script, "rectangle"), 12u) << "the ego and the near vehicle, six times";
-  EXPECT_EQ(count(script, "fc rgb '#d55e00'"), 6u) << "who is hit stands out";
-  EXPECT_EQ(count(script, "'BP: left'"), 6u);
-  EXPECT_THAT(script, HasSubstr("from 15.000,0.700 to 20.000,2.500"));
-  EXPECT_THAT(script, HasSubstr("'45' at"));
+  const Canvas picture = picture_of({"rules", std::nullopt, episode(8)});
+  EXPECT_THAT(texts(picture), AllOf(IsSupersetOf({"rules, before a collision", "5 s before",
+                                                  "1 s before", "collision", "BP: left"}),
+                                    Not(Contains("6 s before"))));
+  const auto roads = drawn<Inset>(picture.shapes);
+  ASSERT_EQ(roads.size(), 6u);
+  EXPECT_EQ(areas(picture, kEgo).size(), 6u);
+  EXPECT_EQ(areas(picture, kHit).size(), 6u) << "who is hit stands out";
+  EXPECT_LT(roads.back().at.y + roads.back().height, picture.height);
 }
 
 TEST(EpisodeFigure, HasAsManyInstantsAsTheEpisode) {
-  const std::string script = gnuplot_script(
-      {"rules", std::nullopt, episode(2, TracedCollision{"rear_ending", 8})}, PictureFormat::kSvg);
-  EXPECT_EQ(count(script, " s before'"), 1u);
+  EXPECT_EQ(drawn<Inset>(picture_of({"rules", std::nullopt, episode(2)}).shapes).size(), 2u);
 }
 
-TEST(EpisodeFigure, IsDrawnInBothFormats) {
-  const EpisodeFigure figure{"rules+mop", episode(1000),
-                             episode(30, TracedCollision{"rear_ending", 8})};
-  EXPECT_THAT(run_gnuplot(gnuplot_script(figure, PictureFormat::kSvg)),
-              HasSubstr("rules+mop, before a collision"));
-  EXPECT_THAT(run_gnuplot(gnuplot_script(figure, PictureFormat::kPng)), StartsWith("\x89PNG"));
+TEST(EpisodeFigure, OfBothShowsOneBelowTheOther) {
+  const Canvas typical = picture_of({"rules", episode(9), std::nullopt}),
+               failed = picture_of({"rules", std::nullopt, episode(9)}),
+               both = picture_of({"rules", episode(9), episode(9)});
+  EXPECT_EQ(both.height, typical.height + failed.height);
 }
 
 TEST(EpisodeFigure, SaysWhatItShows) {
-  const std::string caption =
-      caption_of({"rules+mop", episode(1000), episode(30, TracedCollision{"side_by_other", 8})});
-  for (const char* part : {"rules+mop_1002_3", "BP reward 500", "7 lane changes", "side by other"})
+  const std::string caption = caption_of({"rules+mop", episode(1000), episode(30)});
+  for (const char* part : {"rules+mop_1002_3", "BP reward 500", "7 lane changes", "rear ending"})
     EXPECT_THAT(caption, HasSubstr(part));
 }
 

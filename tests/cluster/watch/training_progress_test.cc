@@ -3,91 +3,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <fstream>
-
-#include "cluster/watch/display.h"
-#include "cluster/watch/line_tail.h"
-#include "proto/run/metrics.h"
-#include "tests/support/temporary_directory.h"
-
 namespace corridor::cluster {
 namespace {
 
 using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
-using testing::IsEmpty;
 using testing::Not;
 
 constexpr int kCores = 2;
-
-TEST(MetricsLine, IsReadWithItsPlaceAndAllItsNumbers) {
-  const auto line = parse_metrics_line(
-      R"({"phase":"BP","round":7,"step":3584,"time_s":1.25,"charts/SPS":7000,"eval/x":null})");
-  ASSERT_TRUE(line);
-  EXPECT_EQ(line->phase, "BP");
-  EXPECT_EQ(line->round, 7u);
-  EXPECT_EQ(line->step, 3584);
-  EXPECT_EQ(line->values, (std::map<std::string, double, std::less<>>{
-                              {"time_s", 1.25}, {metric::kStepsPerS, 7000.0}}));
-}
-
-TEST(MetricsLine, IsNothingWhenTornOrForeign) {
-  for (const char* text :
-       {"", "{", R"({"phase":"BP","round":7,"step":35)", "[1,2]", "null", "7",
-        R"({"phase":"BP","round":-1,"step":0})", R"({"phase":3,"round":1,"step":0})",
-        R"({"round":1,"step":0})", R"({"phase":"BP","round":1.5,"step":0})", "\xff\xfe"}) {
-    EXPECT_FALSE(parse_metrics_line(text)) << text;
-  }
-}
-
-TEST(StepCount, IsReadFromLinesOfThatFormOnly) {
-  EXPECT_EQ(parse_step_count("1200/40000"), 1200);
-  for (const char* text : {"", "/", "12", "12/", "/40", "12/40 ", "a 12/40", "12/40/7"}) {
-    EXPECT_FALSE(parse_step_count(text)) << text;
-  }
-}
-
-class Files : public testing::Test {
- protected:
-  void append(const std::string& text) { std::ofstream(file_, std::ios::app) << text; }
-
-  testing_support::TemporaryDirectory temporary_;
-  std::filesystem::path file_ = temporary_.path() / "a.jsonl";
-};
-
-TEST_F(Files, ATailGivesEachLineOnceAndATornOneWhenItIsWhole) {
-  LineTail tail(file_);
-  EXPECT_THAT(tail.read(), IsEmpty());
-  append("one\ntw");
-  EXPECT_THAT(tail.read(), ElementsAre("one"));
-  EXPECT_THAT(tail.read(), IsEmpty());
-  append("o\nthree\n");
-  EXPECT_THAT(tail.read(), ElementsAre("two", "three"));
-}
-
-TEST_F(Files, ATailLeavesOutWhatWasThereBeforeIt) {
-  append("old\n");
-  LineTail tail(file_);
-  append("new\n");
-  EXPECT_THAT(tail.read(), ElementsAre("new"));
-}
-
-TEST_F(Files, ATailBeginsAgainWhenTheFileIsWrittenAnew) {
-  append("a long line\n");
-  LineTail tail(file_);
-  std::ofstream(file_) << "x\n";
-  EXPECT_THAT(tail.read(), ElementsAre("x"));
-}
-
-TEST_F(Files, TheLastWholeMetricsLineIsFoundBehindATornOne) {
-  EXPECT_FALSE(last_metrics_line(file_));
-  for (int round = 0; round < 2000; ++round) {
-    append("{\"phase\":\"MoP\",\"round\":" + std::to_string(round) + ",\"step\":1}\n");
-  }
-  append("{\"phase\":\"MoP\",\"rou");
-  EXPECT_EQ(last_metrics_line(file_)->round, 1999u);
-}
 
 // 10 rounds of MoP and 10 of BP, 2 actors x 100 steps each.
 RunConfig config() {
@@ -207,12 +131,6 @@ TEST_F(Progress, NamesTheCoresWhenTheyAreBusyAndWhatTheyDo) {
   };
   EXPECT_THAT(line_for(1.5), HasSubstr("bottleneck: the 2 cores: simulate 75 %, update 25 %"));
   EXPECT_THAT(line_for(0.5), HasSubstr("bottleneck: the learner: update 100 %"));
-}
-
-TEST(ProgressBar, FillsFromTheLeftAndNeverOverflows) {
-  EXPECT_EQ(progress_bar(0.0, 4), "[....]");
-  EXPECT_EQ(progress_bar(0.5, 4), "[##..]");
-  EXPECT_EQ(progress_bar(1.7, 4), "[####]");
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <fstream>
 #include <limits>
 #include <sstream>
 
@@ -69,6 +70,34 @@ TEST_F(Metrics, AFileThatCannotBeOpenedOrWrittenIsNamed) {
               testing::HasSubstr(directory_.path().string()));
   MetricsWriter full("/dev/full");
   EXPECT_THAT(failure_of([&] { full.write("MoP", 1, 1, {}); }), testing::HasSubstr("/dev/full"));
+}
+
+TEST_F(Metrics, TheLastWholeLineIsFoundBehindATornOne) {
+  EXPECT_FALSE(last_metrics_line(file_));
+  MetricsWriter writer(file_);
+  for (std::uint64_t round = 0; round < 2000; ++round) writer.write("MoP", round, 1, {});
+  std::ofstream(file_, std::ios::app) << "{\"phase\":\"MoP\",\"rou";
+  EXPECT_EQ(last_metrics_line(file_)->round, 1999u);
+}
+
+TEST(MetricsLine, IsReadWithItsPlaceAndAllItsNumbers) {
+  const auto line = parse_metrics_line(
+      R"({"phase":"BP","round":7,"step":3584,"time_s":1.25,"charts/SPS":7000,"eval/x":null})");
+  ASSERT_TRUE(line);
+  EXPECT_EQ(line->phase, "BP");
+  EXPECT_EQ(line->round, 7u);
+  EXPECT_EQ(line->step, 3584);
+  EXPECT_EQ(line->values,
+            (std::map<std::string, double, std::less<>>{{"time_s", 1.25}, {"charts/SPS", 7000.0}}));
+}
+
+TEST(MetricsLine, IsNothingWhenTornOrForeign) {
+  for (const char* text :
+       {"", "{", R"({"phase":"BP","round":7,"step":35)", "[1,2]", "null", "7",
+        R"({"phase":"BP","round":-1,"step":0})", R"({"phase":3,"round":1,"step":0})",
+        R"({"round":1,"step":0})", R"({"phase":"BP","round":1.5,"step":0})", "\xff\xfe"}) {
+    EXPECT_FALSE(parse_metrics_line(text)) << text;
+  }
 }
 
 }  // namespace
