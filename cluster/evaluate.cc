@@ -10,13 +10,13 @@
 #include "cluster/launch/plan.h"
 #include "cluster/results/evaluation_result.h"
 #include "cluster/results/results_tables.h"
-#include "cluster/watch/display.h"
 #include "cluster/watch/line_tail.h"
 #include "cluster/watch/step_progress.h"
 #include "proto/base/failure.h"
 #include "proto/base/json.h"
 #include "proto/base/text.h"
 #include "proto/settings/planner_pairs.h"
+#include "proto/system/clock.h"
 #include "proto/system/files.h"
 
 namespace corridor::cluster {

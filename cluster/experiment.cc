@@ -10,7 +10,6 @@
 #include "cluster/launch/plan.h"
 #include "cluster/results/evaluation_result.h"
 #include "cluster/results/results_tables.h"
-#include "cluster/watch/display.h"
 #include "cluster/watch/line_tail.h"
 #include "cluster/watch/step_progress.h"
 #include "proto/base/failure.h"
@@ -23,6 +22,7 @@
 #include "proto/run/run_directory.h"
 #include "proto/settings/planner_pairs.h"
 #include "proto/settings/schedule.h"
+#include "proto/system/clock.h"
 #include "proto/system/files.h"
 
 namespace corridor::cluster {

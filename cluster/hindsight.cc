@@ -5,12 +5,12 @@
 #include "cluster/launch/plan.h"
 #include "cluster/results/evaluation_result.h"
 #include "cluster/results/hindsight_result.h"
-#include "cluster/watch/display.h"
 #include "cluster/watch/line_tail.h"
 #include "cluster/watch/step_progress.h"
 #include "proto/base/failure.h"
 #include "proto/base/json.h"
 #include "proto/config/run_config.h"
+#include "proto/system/clock.h"
 #include "proto/system/files.h"
 
 namespace corridor::cluster {

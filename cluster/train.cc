@@ -25,6 +25,7 @@
 #include "proto/run/networks.h"
 #include "proto/run/run_directory.h"
 #include "proto/settings/schedule.h"
+#include "proto/system/clock.h"
 #include "proto/system/files.h"
 #include "proto/system/program.h"
 

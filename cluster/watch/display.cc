@@ -4,7 +4,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <chrono>
 
 #include "proto/base/format.h"
 
@@ -19,10 +18,6 @@ int terminal_columns(std::FILE* out) {
 }
 
 }  // namespace
-
-double monotonic_s() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 std::string progress_bar(double done, int width) {
   const int filled = static_cast<int>(std::clamp(done, 0.0, 1.0) * width);

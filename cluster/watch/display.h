@@ -34,9 +34,6 @@ class ProgressDisplay {
   std::optional<double> last_s_;
 };
 
-// Seconds of a clock that only goes forward.
-double monotonic_s();
-
 // "[#####.....]": `done` in [0, 1].
 std::string progress_bar(double done, int width);
 

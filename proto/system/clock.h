@@ -21,4 +21,7 @@ inline double in_seconds(TimePoint::duration passed) {
   return std::chrono::duration<double>(passed).count();
 }
 
+// Of the machine's, after some moment in the past.
+inline double monotonic_s() { return in_seconds(steady_now().time_since_epoch()); }
+
 }  // namespace corridor
