@@ -5,7 +5,6 @@
 #include <numbers>
 
 #include "cluster/pictures/chart.h"
-#include "cluster/pictures/choices.h"
 #include "cluster/pictures/road_view.h"
 
 namespace corridor::cluster {
@@ -105,7 +104,7 @@ double draw_failed(Canvas& canvas, const EpisodeTrace& trace, double top) {
     if (step.command) {
       canvas.add(Text{{kLeft - 14, top + 0.4 * height + 24},
                       13,
-                      "BP: " + command_name(*step.command),
+                      "BP: " + command_name(trace, *step.command),
                       kFaint,
                       Anchor::kEnd});
     }

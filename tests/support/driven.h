@@ -14,6 +14,7 @@ namespace corridor::testing_support {
 // with 9.
 inline EpisodeTrace driven_episode(std::size_t steps) {
   EpisodeTrace trace;
+  trace.commands = {"keep", "left", "right"};
   trace.step_s = 1.0;
   trace.lanes = 3;
   trace.lane_width_m = 3.2;
