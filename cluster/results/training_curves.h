@@ -10,7 +10,7 @@
 
 #include "cluster/results/evaluation_result.h"
 #include "proto/run/metrics.h"
-#include "proto/settings/transition.h"
+#include "proto/settings/named_networks.h"
 
 namespace corridor::cluster {
 

@@ -7,6 +7,7 @@
 #include "proto/base/failure.h"
 #include "proto/base/text.h"
 #include "proto/run/metrics.h"
+#include "proto/system/time_account.h"
 
 namespace corridor::cluster {
 namespace {
