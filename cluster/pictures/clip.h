@@ -1,12 +1,16 @@
 // A stretch of a driven episode, and where everything is at any time in it. Pure.
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
 #include "proto/run/episode_trace.h"
 
 namespace corridor::cluster {
+
+// The corridor changes of the MoP: an action is a speed change and, beneath it, one of these.
+inline constexpr std::array kCorridorChanges = {"right", "straight", "left"};
 
 struct Clip {
   std::string title;                      // "hierarchical, seed 1002, episode 3, rigid"

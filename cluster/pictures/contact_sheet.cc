@@ -2,7 +2,6 @@
 
 #include <cmath>
 
-#include "cluster/pictures/choices.h"
 #include "cluster/pictures/road_view.h"
 #include "proto/base/failure.h"
 
@@ -55,10 +54,11 @@ Canvas contact_sheet(const std::vector<Clip>& clips, double interval_s) {
   for (const auto& [clip, time_s, label] : rows_of(clips, interval_s)) {
     const double top = canvas.height - kGap;
     const TracedStep& step = clip->step_at(time_s);
-    canvas.add(
-        Text{{kMargin, top + 16},
-             14,
-             step.command ? fmt::format("{}, BP: {}", label, command_name(*step.command)) : label});
+    canvas.add(Text{{kMargin, top + 16},
+                    14,
+                    step.command
+                        ? fmt::format("{}, BP: {}", label, clip->trace.command_name(*step.command))
+                        : label});
     const Canvas road = road_from_above(*clip, time_s, kRoad);
     canvas.inset({kMargin, top + kLabelHeight}, road);
     canvas.height = top + kLabelHeight + road.height + 2 * kGap;

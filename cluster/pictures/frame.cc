@@ -4,8 +4,8 @@
 #include <array>
 #include <cmath>
 
-#include "cluster/pictures/choices.h"
 #include "cluster/pictures/road_view.h"
+#include "proto/base/format.h"
 
 namespace corridor::cluster {
 namespace {
@@ -31,13 +31,14 @@ class Scale {
 };
 
 // Bars of the BP's values, the command given in the colour of what is chosen.
-void draw_bp_values(Canvas& canvas, const TracedStep& step, double left, double top) {
+void draw_bp_values(Canvas& canvas, const EpisodeTrace& trace, const TracedStep& step, double left,
+                    double top) {
   canvas.add(Text{{left, top + 14}, 14, "BP: value of each command"});
   if (!step.decision) return;
   const std::vector<double>& values = step.decision->bp_values;
   const int command = step.command.value_or(0);
   if (values.empty()) {
-    canvas.add(Text{{left, top + 44}, 16, fmt::format("asks for {}", command_name(command))});
+    canvas.add(Text{{left, top + 44}, 16, "asks for " + trace.command_name(command)});
     return;
   }
   const Scale scale(values);
@@ -45,7 +46,7 @@ void draw_bp_values(Canvas& canvas, const TracedStep& step, double left, double 
     const double y = top + 34 + 40 * static_cast<double>(i);
     canvas.rectangle(left + 52, y, 30 + 130 * scale.share(values[i]), 24,
                      static_cast<int>(i) == command ? kChosen : kOpen);
-    canvas.add(Text{{left, y + 17}, 14, command_name(static_cast<int>(i))});
+    canvas.add(Text{{left, y + 17}, 14, trace.command_name(static_cast<int>(i))});
     canvas.add(Text{{left + 58, y + 17}, 13, fmt::format("{:.2f}", values[i])});
   }
 }
@@ -173,7 +174,7 @@ Canvas Frames::at(double time_s) const {
                   Anchor::kEnd});
   canvas.inset({kMargin, kTitleHeight}, road_from_above(clip_, time_s, kRoad));
   const TracedStep& step = clip_.step_at(time_s);
-  draw_bp_values(canvas, step, kMargin, top);
+  draw_bp_values(canvas, clip_.trace, step, kMargin, top);
   draw_mop_values(canvas, clip_, step, kMargin + 270, top);
   draw_history(canvas, time_s, kWidth - kMargin - kChartWidth, top);
   return canvas;

@@ -1,6 +1,5 @@
 #include "cluster/pictures/player.h"
 
-#include "cluster/pictures/choices.h"
 #include "cluster/pictures/palette.h"
 #include "cluster/pictures/player_page.h"
 #include "proto/base/json.h"
@@ -29,10 +28,7 @@ Json colours() {
 }  // namespace
 
 std::string player_page(const std::vector<Clip>& clips) {
-  Json data = {{"clips", Json::array()},
-               {"colours", colours()},
-               {"commands", kCommandNames},
-               {"changes", kCorridorChanges}};
+  Json data = {{"clips", Json::array()}, {"colours", colours()}, {"changes", kCorridorChanges}};
   for (const Clip& clip : clips) data["clips"].push_back(described(clip));
   std::string text = data.dump();
   // No text of it may end the script.

@@ -46,7 +46,7 @@ TEST_F(Player, HoldsItsClipsAndWhatTheyAreShownWith) {
   EXPECT_EQ(clip["speed_changes_mps"], Json({-1.0, 1.0}));
   EXPECT_EQ(clip["steps"].size(), 3u);
   EXPECT_TRUE(clip["steps"][0].contains("on_the_way"));
-  EXPECT_EQ(data["commands"], Json({"keep", "left", "right"}));
+  EXPECT_EQ(clip["commands"], Json({"keep", "left", "right"}));
   EXPECT_EQ(data["colours"]["ego"], hexadecimal(kEgo));
 }
 
