@@ -54,6 +54,10 @@ std::string summary(const RunConfig& config) {
   const Schedule schedule(config);
   const RoadSettings& road = config.road;
   const TrafficSettings& traffic = config.traffic;
+  std::string phases;
+  for (const NamedNetwork& network : kNetworks) {
+    phases += phase_line(config, schedule, network.id);
+  }
   return fmt::format(
              "  road        {} lanes of {} m, {:.1f} km, {:.0f} km/h\n"
              "  traffic     {} to {} vehicles within {:.0f} m; {:.0f} % slow, {:.0f} % trucks; "
@@ -64,7 +68,7 @@ std::string summary(const RunConfig& config) {
              100.0 * traffic.slow_share, 100.0 * traffic.truck_share, traffic.blind_rate_per_s,
              traffic.objects_per_km, config.simulation.step_s, config.simulation.episode_steps,
              config.run.actors, config.schedule.steps_per_round) +
-         phase_line(config, schedule, Phase::kMop) + phase_line(config, schedule, Phase::kBp) +
+         phases +
          fmt::format("  evaluation  {} steps for each planner, {} seed{}\n",
                      grouped(config.evaluation.steps), config.evaluation.seeds.size(),
                      config.evaluation.seeds.size() == 1 ? "" : "s");

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "proto/settings/choices.h"
+#include "proto/settings/named_networks.h"
 #include "proto/settings/transition.h"
 
 namespace at {

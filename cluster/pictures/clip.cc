@@ -52,10 +52,6 @@ TracedScene Clip::scene_at(double time_s) const {
   return scene;
 }
 
-const std::string& command_name(const EpisodeTrace& trace, int command) {
-  return trace.commands.at(static_cast<std::size_t>(command));
-}
-
 Clip clip_of(const EpisodeTrace& trace, const std::string& title, double from_s, double to_s) {
   CORRIDOR_CHECK(!trace.steps.empty() && from_s <= to_s, "{} to {} s", from_s, to_s);
   const std::size_t last = trace.steps.size() - 1;

@@ -25,8 +25,6 @@ struct Clip {
   TracedScene scene_at(double time_s) const;
 };
 
-const std::string& command_name(const EpisodeTrace& trace, int command);
-
 // From `from_s` to `to_s` after the trace's start, in whole steps, as far as it goes.
 Clip clip_of(const EpisodeTrace& trace, const std::string& title, double from_s, double to_s);
 

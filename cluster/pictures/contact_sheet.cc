@@ -57,7 +57,7 @@ Canvas contact_sheet(const std::vector<Clip>& clips, double interval_s) {
     canvas.add(Text{{kMargin, top + 16},
                     14,
                     step.command
-                        ? fmt::format("{}, BP: {}", label, command_name(clip->trace, *step.command))
+                        ? fmt::format("{}, BP: {}", label, clip->trace.command_name(*step.command))
                         : label});
     const Canvas road = road_from_above(*clip, time_s, kRoad);
     canvas.inset({kMargin, top + kLabelHeight}, road);

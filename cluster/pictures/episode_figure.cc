@@ -6,6 +6,7 @@
 
 #include "cluster/pictures/chart.h"
 #include "cluster/pictures/road_view.h"
+#include "proto/base/format.h"
 
 namespace corridor::cluster {
 namespace {
@@ -104,7 +105,7 @@ double draw_failed(Canvas& canvas, const EpisodeTrace& trace, double top) {
     if (step.command) {
       canvas.add(Text{{kLeft - 14, top + 0.4 * height + 24},
                       13,
-                      "BP: " + command_name(trace, *step.command),
+                      "BP: " + trace.command_name(*step.command),
                       kFaint,
                       Anchor::kEnd});
     }

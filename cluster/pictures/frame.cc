@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "cluster/pictures/road_view.h"
+#include "proto/base/format.h"
 
 namespace corridor::cluster {
 namespace {
@@ -36,8 +37,7 @@ void draw_bp_values(Canvas& canvas, const EpisodeTrace& trace, const TracedStep&
   if (!step.decision || !step.command) return;
   const std::vector<double>& values = step.decision->bp_values;
   if (values.empty()) {
-    canvas.add(
-        Text{{left, top + 44}, 16, fmt::format("asks for {}", command_name(trace, *step.command))});
+    canvas.add(Text{{left, top + 44}, 16, "asks for " + trace.command_name(*step.command)});
     return;
   }
   const Scale scale(values);
@@ -45,7 +45,7 @@ void draw_bp_values(Canvas& canvas, const EpisodeTrace& trace, const TracedStep&
     const double y = top + 34 + 40 * static_cast<double>(i);
     canvas.rectangle(left + 52, y, 30 + 130 * scale.share(values[i]), 24,
                      static_cast<int>(i) == *step.command ? kChosen : kOpen);
-    canvas.add(Text{{left, y + 17}, 14, command_name(trace, static_cast<int>(i))});
+    canvas.add(Text{{left, y + 17}, 14, trace.command_name(static_cast<int>(i))});
     canvas.add(Text{{left + 58, y + 17}, 13, fmt::format("{:.2f}", values[i])});
   }
 }

@@ -38,7 +38,9 @@ using Processes = std::vector<ProcessMetrics> RunRecord::*;
 
 std::int64_t window_steps(const RunGroup& group) {
   const RunConfig& config = group.runs.front().config;
-  return (config.phase(Phase::kMop).steps + config.phase(Phase::kBp).steps) / kWindowsPerTraining;
+  std::int64_t steps = 0;
+  for (const DqnSettings& dqn : config.dqn) steps += dqn.steps;
+  return steps / kWindowsPerTraining;
 }
 
 Curve mean_curve(const std::vector<Curve>& curves) {
@@ -123,7 +125,8 @@ std::string window_text(const std::vector<RunGroup>& groups) {
 
 void add_figures(std::vector<Figure>& figures, const std::vector<RunGroup>& groups, Phase phase) {
   const bool mop = phase == Phase::kMop;
-  const std::string prefix = mop ? "mop_" : "bp_", planner = phase_name(phase);
+  const std::string prefix = named_network(phase).name + std::string("_");
+  const std::string planner = phase_name(phase);
   std::vector<std::string> labels;
   for (const RunGroup& group : groups) labels.push_back(group.label);
   const auto add = [&](const char* name, std::string caption, const char* trend, bool points,
@@ -157,7 +160,7 @@ void add_figures(std::vector<Figure>& figures, const std::vector<RunGroup>& grou
 
 std::vector<Figure> training_figures(const std::vector<RunGroup>& groups) {
   std::vector<Figure> figures;
-  for (const Phase phase : {Phase::kMop, Phase::kBp}) add_figures(figures, groups, phase);
+  for (const NamedNetwork& network : kNetworks) add_figures(figures, groups, network.id);
   return figures;
 }
 

@@ -35,8 +35,9 @@ constexpr Tag kTags[] = {
 };
 
 std::string full_name(const Tag& tag, const std::string& phase) {
-  const char* planner = phase == phase_name(Phase::kMop) ? "mop" : "bp";
-  return fmt::format("{}/{}/{}", tag.group, planner, tag.name);
+  const auto network = std::ranges::find(kNetworks, phase, &NamedNetwork::phase_name);
+  return fmt::format("{}/{}/{}", tag.group, network == kNetworks.end() ? phase : network->name,
+                     tag.name);
 }
 
 }  // namespace

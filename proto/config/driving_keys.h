@@ -4,12 +4,13 @@
 
 #include "proto/config/config_key.h"
 #include "proto/settings/driving_settings.h"
+#include "proto/settings/transition.h"
 
 namespace corridor::config_keys {
 
-// With three corridor changes and three commands each, an action still fits a byte
+// With three corridor changes and kSkillCount commands each, an action still fits a byte
 // (actor/driving/action.h).
-inline constexpr std::size_t kSpeedChangesMax = 28;
+inline constexpr std::size_t kSpeedChangesMax = 256 / (3 * kSkillCount);
 
 template <typename Visitor>
 void describe(RoadSettings& road, Visitor& v) {

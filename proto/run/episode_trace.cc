@@ -39,7 +39,7 @@ std::vector<TracedVehicle> parse_vehicles(const Json& list) {
   return vehicles;
 }
 
-TracedDecision parse_decision(const Json& object) {
+TracedDecision parse_decision(const Json& object, std::size_t commands) {
   TracedDecision decision;
   decision.corridor = whole_number<int>(object.at("corridor"));
   object.at("set_point_mps").get_to(decision.set_point_mps);
@@ -55,6 +55,8 @@ TracedDecision parse_decision(const Json& object) {
   object.at("bp_reward").get_to(decision.bp_reward);
   object.at("mop_reward").get_to(decision.mop_reward);
   if (decision.path_s_m.size() != decision.path_d_m.size()) throw Failure("half a path");
+  const std::size_t values = decision.bp_values.size();
+  if (values != 0 && values != commands) throw Failure("values of other commands");
   return decision;
 }
 
@@ -66,7 +68,7 @@ TracedStep parse_step(const Json& object, std::size_t commands) {
     if (static_cast<std::size_t>(*step.command) >= commands) throw Failure("an unknown command");
   }
   step.others = parse_vehicles(object.at("others"));
-  if (object.contains("decision")) step.decision = parse_decision(object.at("decision"));
+  if (object.contains("decision")) step.decision = parse_decision(object.at("decision"), commands);
   for (const Json& scene : object.at("on_the_way")) {
     step.on_the_way.push_back({parse_vehicle(scene.at("ego")), parse_vehicles(scene.at("others"))});
   }
@@ -74,6 +76,12 @@ TracedStep parse_step(const Json& object, std::size_t commands) {
 }
 
 }  // namespace
+
+const std::string& EpisodeTrace::command_name(int command) const {
+  const auto place = static_cast<std::size_t>(command);
+  CORRIDOR_CHECK(place < commands.size(), "command {} of {}", command, commands.size());
+  return commands[place];
+}
 
 Json to_json(const EpisodeTrace& trace) {
   Json steps = Json::array();

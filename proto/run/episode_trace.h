@@ -65,6 +65,9 @@ struct EpisodeTrace {
   int lane_changes = 0;
   std::optional<TracedCollision> collision;  // at the end of the last step
   std::vector<TracedStep> steps;             // the start, and what each step led to
+
+  // CHECKs that there is such a command.
+  const std::string& command_name(int command) const;
 };
 
 Json to_json(const EpisodeTrace& trace);

@@ -16,6 +16,7 @@ inline EpisodeTrace driven_episode(std::size_t steps) {
   EpisodeTrace trace;
   trace.commands = {"keep", "left", "right"};
   trace.step_s = 1.0;
+  trace.commands = {"keep", "left", "right"};
   trace.lanes = 3;
   trace.lane_width_m = 3.2;
   trace.speed_limit_mps = 13.89;
