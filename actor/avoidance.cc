@@ -8,6 +8,7 @@
 #include "actor/driving/action.h"
 #include "actor/what_if.h"
 #include "proto/base/failure.h"
+#include "proto/settings/collision_kinds.h"
 #include "proto/system/program.h"
 
 namespace corridor::actor {

@@ -3,6 +3,7 @@
 #include "actor/recorded_episode.h"
 #include "proto/base/failure.h"
 #include "proto/base/json.h"
+#include "proto/settings/collision_kinds.h"
 #include "proto/system/files.h"
 
 namespace corridor::actor {

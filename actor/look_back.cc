@@ -5,6 +5,7 @@
 
 #include "proto/base/failure.h"
 #include "proto/base/json.h"
+#include "proto/settings/collision_kinds.h"
 #include "proto/system/files.h"
 
 namespace corridor::actor {

@@ -15,6 +15,7 @@
 #include "proto/config/run_config.h"
 #include "proto/run/networks.h"
 #include "proto/run/run_directory.h"
+#include "proto/settings/collision_kinds.h"
 #include "proto/system/command_line.h"
 #include "proto/system/identity.h"
 #include "proto/system/program.h"

@@ -7,6 +7,7 @@
 #include "actor/planners.h"
 #include "actor/recorded_episode.h"
 #include "proto/base/failure.h"
+#include "proto/settings/collision_kinds.h"
 
 namespace corridor::actor {
 namespace {

@@ -8,6 +8,7 @@
 
 #include "learner/torch_q_network.h"
 #include "proto/base/failure.h"
+#include "proto/run/checkpoints.h"
 #include "proto/system/log.h"
 
 namespace corridor::learner {

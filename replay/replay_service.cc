@@ -1,6 +1,8 @@
 #include "replay/replay_service.h"
 
 #include "proto/base/failure.h"
+#include "proto/run/checkpoints.h"
+#include "proto/run/metrics.h"
 #include "proto/settings/limits.h"
 #include "proto/wire/codec.h"
 

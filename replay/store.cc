@@ -9,6 +9,7 @@
 
 #include "proto/base/failure.h"
 #include "proto/base/random.h"
+#include "proto/run/checkpoints.h"
 #include "replay/power.h"
 
 namespace corridor::replay {

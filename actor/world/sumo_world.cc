@@ -11,6 +11,8 @@
 
 #include "proto/base/failure.h"
 #include "proto/base/random.h"
+#include "proto/settings/collision_kinds.h"
+#include "proto/settings/sumo_names.h"
 
 namespace corridor::world {
 namespace {

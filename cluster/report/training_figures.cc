@@ -4,6 +4,7 @@
 
 #include "proto/base/format.h"
 #include "proto/base/text.h"
+#include "proto/run/metrics.h"
 
 namespace corridor::cluster {
 namespace {

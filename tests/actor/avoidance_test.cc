@@ -8,6 +8,8 @@
 #include "actor/driving/action.h"
 #include "actor/world/sumo_world.h"
 #include "proto/base/failure.h"
+#include "proto/settings/collision_kinds.h"
+#include "proto/settings/sumo_names.h"
 #include "proto/system/files.h"
 #include "scenarios/sumo_files.h"
 #include "tests/support/fake_world.h"

@@ -9,6 +9,7 @@
 #include "actor/episode.h"
 #include "actor/policy/action_values.h"
 #include "actor/world/sumo_world.h"
+#include "proto/settings/sumo_names.h"
 #include "proto/system/time_account.h"
 #include "scenarios/sumo_files.h"
 #include "tests/bench/paper.h"

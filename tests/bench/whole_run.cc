@@ -15,6 +15,7 @@
 #include "proto/run/run_directory.h"
 #include "proto/system/command_line.h"
 #include "proto/system/program.h"
+#include "proto/system/time_account.h"
 #include "tests/bench/td_floor.h"
 #include "tests/support/command.h"
 #include "tests/support/temporary_directory.h"

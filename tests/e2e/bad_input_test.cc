@@ -7,6 +7,7 @@
 
 #include "proto/base/random.h"
 #include "proto/run/checkpoints.h"
+#include "proto/settings/sumo_names.h"
 #include "tests/e2e/run_support.h"
 
 namespace corridor::e2e {

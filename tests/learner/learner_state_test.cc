@@ -7,6 +7,7 @@
 #include "learner/training.h"
 #include "proto/base/failure.h"
 #include "proto/base/json.h"
+#include "proto/run/checkpoints.h"
 
 namespace corridor::learner {
 namespace {

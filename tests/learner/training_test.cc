@@ -8,6 +8,8 @@
 
 #include "learner/torch_q_network.h"
 #include "proto/base/json.h"
+#include "proto/run/checkpoints.h"
+#include "proto/run/metrics.h"
 #include "proto/run/tensor_file.h"
 #include "tests/learner/scripted_server.h"
 #include "tests/learner/small_run.h"

@@ -11,6 +11,8 @@
 
 #include "proto/base/failure.h"
 #include "proto/base/random.h"
+#include "proto/run/checkpoints.h"
+#include "proto/run/metrics.h"
 #include "proto/run/run_directory.h"
 #include "proto/wire/codec.h"
 #include "tests/replay/small_run.h"

@@ -13,11 +13,13 @@
 
 #include "proto/base/failure.h"
 #include "proto/base/json.h"
+#include "proto/run/metrics.h"
 #include "proto/system/log.h"
+#include "proto/system/time_account.h"
 #include "proto/wire/codec.h"
 #include "tests/replay/small_run.h"
-#include "tests/support/manual_clock.h"
 #include "tests/support/batches.h"
+#include "tests/support/manual_clock.h"
 #include "tests/support/temporary_directory.h"
 
 namespace corridor::replay {

@@ -10,6 +10,7 @@
 
 #include "proto/base/failure.h"
 #include "proto/base/random.h"
+#include "proto/run/checkpoints.h"
 #include "proto/wire/messages.h"
 #include "tests/replay/chi_square.h"
 

@@ -12,6 +12,7 @@
 #include "proto/config/config_values.h"
 #include "proto/config/run_config.h"
 #include "proto/run/run_directory.h"
+#include "proto/settings/sumo_names.h"
 #include "proto/system/files.h"
 #include "tests/support/temporary_directory.h"
 

@@ -15,6 +15,8 @@
 #include "actor/driving/bypass.h"
 #include "proto/base/failure.h"
 #include "proto/base/hash.h"
+#include "proto/settings/collision_kinds.h"
+#include "proto/settings/sumo_names.h"
 #include "scenarios/sumo_files.h"
 #include "tests/support/temporary_directory.h"
 

@@ -5,6 +5,7 @@
 
 #include <set>
 
+#include "proto/run/run_directory.h"
 #include "tests/support/temporary_directory.h"
 
 namespace corridor::cluster {

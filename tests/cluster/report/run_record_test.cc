@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "proto/base/failure.h"
+#include "proto/run/run_directory.h"
 #include "proto/system/files.h"
 #include "tests/support/fake_run.h"
 #include "tests/support/temporary_directory.h"

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include "proto/run/metrics.h"
+#include "proto/system/time_account.h"
 
 namespace corridor::cluster {
 namespace {

@@ -3,6 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "proto/run/metrics.h"
+#include "proto/system/time_account.h"
+
 namespace corridor::cluster {
 namespace {
 

@@ -5,6 +5,7 @@
 
 #include "proto/run/metrics.h"
 #include "proto/settings/schedule.h"
+#include "proto/system/time_account.h"
 
 namespace corridor::cluster {
 namespace {
