@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "proto/settings/named_networks.h"
 #include "proto/settings/choices.h"
 #include "proto/settings/driving_settings.h"
+#include "proto/settings/named_networks.h"
 #include "proto/settings/transition.h"
 
 namespace corridor {

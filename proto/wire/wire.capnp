@@ -1,7 +1,7 @@
 @0xb1f0c7d25a9e4e63;
 # Every message between corridor's processes. This file is the reference: who sends what, what
-# answers it, in which order, in which unit, up to which size. proto/wire/messages.h holds the same as
-# plain values, proto/wire/codec.h turns one into the other, proto/wire/endpoint.h carries them.
+# answers it, in which order, in which unit, up to which size. proto/wire/messages.h holds the same
+# as plain values, proto/wire/codec.h turns one into the other, proto/wire/endpoint.h carries them.
 #
 # A message is two ZeroMQ frames: a Header, and a body (Request or Reply; empty for some kinds).
 #
@@ -62,7 +62,8 @@ struct ReplayRequest {
       round @1 :UInt64;
       observations @2 :UInt32;  # of the row layout (proto/settings/transition.h)
       rows @3 :Data;            # float32, little-endian, whole rows
-      priorities @4 :Data;      # float32, one a row: |TD error| by the actor's weights, finite, >= 0
+      priorities @4 :Data;      # float32, one a row: |TD error| by the actor's weights; finite,
+                                # >= 0
       open @5 :OpenEpisode;
     }
 
