@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "cluster/evaluate.h"
-#include "cluster/experiment_file.h"
+#include "cluster/experiment_plan.h"
 #include "cluster/launch/local.h"
 #include "cluster/launch/manifest.h"
 #include "cluster/launch/plan.h"
@@ -32,21 +32,9 @@ namespace fs = std::filesystem;
 
 constexpr int kCoresPerTraining = 2;
 
-// One training seed of one training.
-struct Run {
-  const TrainingArm* training = nullptr;
-  std::uint64_t seed = 0;
-  fs::path root;
-  RunConfig config;
-
-  std::string name() const { return fmt::format("{}-{}", training->name, seed); }
-  bool is_first() const { return seed == training->training_seeds.front(); }
-  bool has_begun() const { return fs::exists(root / "manifest.json"); }
-};
-
 // One evaluation of one run's networks in one scenario.
 struct Evaluation {
-  const Run* run = nullptr;
+  const TrainingRun* run = nullptr;
   std::string world;   // its name
   RunDirectory place;  // of that scenario
   EvaluationJob job;
@@ -54,41 +42,22 @@ struct Evaluation {
   fs::path file() const { return evaluation_file(job, place); }
 };
 
-std::vector<Run> runs_of(const Experiment& experiment, const fs::path& directory) {
-  std::vector<Run> runs;
-  for (const TrainingArm& training : experiment.trainings) {
-    for (const std::uint64_t seed : training.training_seeds) {
-      std::vector<std::string> settings = training.settings;
-      settings.push_back(fmt::format("run.seed={}", seed));
-      Run run{&training, seed, {}, load_run_config(training.scenario, settings)};
-      run.root = directory / "runs" / run.name();
-      runs.push_back(std::move(run));
-    }
-  }
-  return runs;
-}
-
 // Of runs that have been trained.
-std::vector<Evaluation> evaluations_of(const Experiment& experiment, const std::vector<Run>& runs) {
+std::vector<Evaluation> evaluations_of(const Experiment& experiment,
+                                       const std::vector<TrainingRun>& runs) {
   std::vector<Evaluation> evaluations;
-  for (const Run& run : runs) {
+  for (const TrainingRun& run : runs) {
     for (const EvaluationWorld& world : run.training->evaluate_in) {
       const EvaluationPlace place = evaluation_place(run.root, world);
-      for (const std::string& planner : run.training->planners) {
-        const PlannerPair& pair = planner_pair(planner);
-        if (!pair.learned() && !run.is_first()) continue;
-        if (!pair.drives_in(place.config.dynamics.world)) continue;
-        for (const std::uint64_t seed : experiment.evaluation_seeds) {
-          evaluations.push_back({&run,
-                                 world.name(""),
-                                 place.directory,
-                                 {planner, seed, experiment.evaluation_steps}});
-        }
+      for (EvaluationJob& job : jobs_of(run, experiment, place.config.dynamics.world)) {
+        evaluations.push_back({&run, world.name(""), place.directory, std::move(job)});
       }
     }
   }
   return evaluations;
 }
+
+bool has_begun(const TrainingRun& run) { return fs::exists(run.root / "manifest.json"); }
 
 // The directory of this experiment, new or of an earlier start.
 void claim(const fs::path& directory, const fs::path& file) {
@@ -105,7 +74,7 @@ void claim(const fs::path& directory, const fs::path& file) {
   }
 }
 
-void check_same_settings(const Run& run) {
+void check_same_settings(const TrainingRun& run) {
   for (const ChangedKey& key :
        changed_keys(config_at_start(RunDirectory::open(run.root)), run.config)) {
     if (!decides_result(key.heeds)) continue;
@@ -115,36 +84,26 @@ void check_same_settings(const Run& run) {
   }
 }
 
-ProcessPlan training_process(const Run& run, const fs::path& log) {
+ProcessPlan training_process(const TrainingRun& run, const fs::path& log) {
   const std::string program = program_directory() / "corridor";
-  ProcessPlan plan{run.name(), {program, "resume", run.root.string()}, log};
-  if (run.has_begun()) return plan;
+  if (has_begun(run)) return {run.name(), {program, "resume", run.root.string()}, log};
   // Whoever began it was killed before it was a run.
   on_disk("remove", run.root, [&] { fs::remove_all(run.root); });
-  plan.argv = {program,           "train",  run.training->scenario.string(), "--run",
-               run.root.string(), "--seed", std::to_string(run.seed)};
-  for (const std::string& setting : run.training->settings) {
-    plan.argv.insert(plan.argv.end(), {"--set", setting});
-  }
-  if (!run.training->from.empty()) {
-    const std::string from = fmt::format("{}-{}", run.training->from, run.seed);
-    plan.argv.insert(plan.argv.end(), {"--from", (run.root.parent_path() / from).string()});
-  }
-  return plan;
+  return {run.name(), train_command(run, program), log};
 }
 
 // Both return the signal that stopped them, or 0.
-int train_all(const std::vector<Run>& runs, const fs::path& directory, int cores) {
+int train_all(const std::vector<TrainingRun>& runs, const fs::path& directory, int cores) {
   std::vector<ProcessPlan> plan;
   std::vector<ProcessPlan> later;  // those that begin with what is trained first
   std::vector<StepTask> tasks;
-  for (const Run& run : runs) {
-    if (run.has_begun()) check_same_settings(run);
+  for (const TrainingRun& run : runs) {
+    if (has_begun(run)) check_same_settings(run);
     const Schedule schedule(run.config);
     const auto steps = [per_round = schedule.steps_per_round()](std::uint64_t rounds) {
       return static_cast<std::int64_t>(rounds) * per_round;
     };
-    const std::uint64_t done = run.has_begun() ? rounds_done(RunDirectory::open(run.root)) : 0;
+    const std::uint64_t done = has_begun(run) ? rounds_done(RunDirectory::open(run.root)) : 0;
     tasks.push_back({run.name(), steps(schedule.rounds()), steps(done),
                      run.root / "metrics" / "learner.jsonl", [steps](std::string_view text) {
                        const auto line = parse_metrics_line(text);
@@ -203,9 +162,9 @@ std::vector<SeedResult> results_in(const std::vector<Evaluation>& evaluations,
   return results;
 }
 
-Table runs_table(const std::vector<Run>& runs) {
+Table runs_table(const std::vector<TrainingRun>& runs) {
   Table table{"Training runs", {"run", "scenario", "training seed", "settings", "fingerprint"}, {}};
-  for (const Run& run : runs) {
+  for (const TrainingRun& run : runs) {
     const std::string settings = listed(run.training->settings);
     const auto checkpoint = newest_checkpoint(RunDirectory::open(run.root));
     CORRIDOR_CHECK(checkpoint.has_value(), "{}", run.root.string());
@@ -218,7 +177,7 @@ Table runs_table(const std::vector<Run>& runs) {
   return table;
 }
 
-void write_results(const Experiment& experiment, const std::vector<Run>& runs,
+void write_results(const Experiment& experiment, const std::vector<TrainingRun>& runs,
                    const std::vector<Evaluation>& evaluations, const ExperimentOptions& options) {
   std::string text =
       fmt::format("# {}\n\n{} steps for each arm, training seed and evaluation seed.\n",
@@ -253,7 +212,7 @@ int experiment(const ExperimentOptions& options, const std::string& program) {
   const Experiment experiment = load_experiment(options.file);
   const int cores = parallel_jobs(options.jobs);
   claim(options.directory, options.file);
-  const std::vector<Run> runs = runs_of(experiment, options.directory);
+  const std::vector<TrainingRun> runs = runs_of(experiment, options.directory);
 
   int signal = train_all(runs, options.directory, cores);
   std::vector<Evaluation> evaluations;
