@@ -24,7 +24,7 @@ struct RetiredKey {
   const char* advice;
 };
 inline constexpr RetiredKey kRetiredKeys[] = {
-    {"run", "delay_ms_max", "0.0", "only tests slow processes down"},
+    {"run", "delay_ms_max", "0.0", "tests set CORRIDOR_TEST_DELAY_MS"},
 };
 
 inline constexpr std::int64_t kStepsMax = 10'000'000'000;
@@ -185,8 +185,6 @@ void describe(RunSettings& run, Visitor& v) {
   v.key({"replay_port"}, run.replay_port, 1, 65'535);
   v.key({"learner_port"}, run.learner_port, 1, 65'535);
   v.key({"peer_timeout_s", "a peer silent for so long is lost"}, run.peer_timeout_s, 0.1, 86'400.0);
-  v.key({"delay_ms_max", "tests: processes sleep at random up to this, each round"},
-        run.delay_ms_max, 0.0, 10'000.0);
 }
 
 template <typename Visitor>

@@ -155,7 +155,6 @@ struct RunSettings {
   int replay_port = 5701;
   int learner_port = 5702;
   double peer_timeout_s = 30.0;
-  double delay_ms_max = 0.0;
 };
 
 // A whole scenario. Immutable once read.

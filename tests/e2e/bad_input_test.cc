@@ -8,6 +8,7 @@
 #include "proto/base/random.h"
 #include "proto/run/checkpoints.h"
 #include "proto/settings/sumo_names.h"
+#include "proto/system/test_delay.h"
 #include "tests/e2e/run_support.h"
 
 namespace corridor::e2e {
@@ -144,10 +145,10 @@ TEST_F(BadInput, RandomBytesToEverySocketChangeNothing) {
   const int replay_port = free_port();
   int learner_port = free_port();
   while (learner_port == replay_port) learner_port = free_port();
-  Command training(
-      train_command(run, {"--set", "run.transport=\"tcp\"", "--set", "run.delay_ms_max=40", "--set",
-                          "run.replay_port=" + std::to_string(replay_port), "--set",
-                          "run.learner_port=" + std::to_string(learner_port)}));
+  Command training(train_command(run, {"--set", "run.transport=\"tcp\"", "--set",
+                                       "run.replay_port=" + std::to_string(replay_port), "--set",
+                                       "run.learner_port=" + std::to_string(learner_port)}),
+                   {{kTestDelayVariable, "40"}});
   // The start of ZeroMQ's own greeting lets some of the bytes reach its framing.
   const std::string greeting("\xff\0\0\0\0\0\0\0\x01\x7f\x03\0NULL", 16);
   int received = 0;

@@ -1,5 +1,6 @@
 // The whole system on two cores: two actors in real SUMO traffic, the replay server, the learner.
 #include "proto/base/json.h"
+#include "proto/system/test_delay.h"
 #include "tests/e2e/run_support.h"
 
 namespace corridor::e2e {
@@ -82,13 +83,39 @@ TEST(Training, TrainsBothPlannersEvaluatesThemAndDrivesTheirEpisodesAgain) {
 
 // With Debian 12's libraries, on every x86-64 processor with AVX2 (learner/blas.h). Who changes
 // what a training computes changes this, and nobody else.
+constexpr const char* kFingerprint = "caf0e003bbc79f39\n";
+
 TEST(Training, GivesTheSameBitsOnEveryMachine) {
   TemporaryDirectory temporary;
   const auto run = temporary.path() / "run";
   const CommandResult result = run_command(train_command(run), kDeadline_s);
   ASSERT_EQ(result.status, 0) << result.output;
   EXPECT_EQ(Json::parse(std::ifstream(run / "learner.json")).at("blas_core"), "Haswell");
-  EXPECT_EQ(fingerprint(run), "caf0e003bbc79f39\n");
+  EXPECT_EQ(fingerprint(run), kFingerprint);
+}
+
+TEST(Training, GoesOnWithTheSameBitsWhereTheCalendarsClockRunsBackwards) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "a sanitizer wants to be the first library";
+#endif
+  TemporaryDirectory temporary;
+  const auto run = temporary.path() / "run";
+  // Slowed, so that there is something to kill.
+  Command training(train_command(run),
+                   {{"LD_PRELOAD", CORRIDOR_BACKWARD_CLOCK}, {kTestDelayVariable, "100"}});
+  ASSERT_TRUE(training.wait_for("MoP", 60.0));
+  for (const auto& [program, consequence] :
+       {std::pair{"corridor-actor", "; started again"}, {"corridor-learner", "; all go on from"}}) {
+    for (const auto& process : processes_with(run)) {
+      if (process.command_line.find(program) == std::string::npos) continue;
+      kill(process.pid, SIGKILL);
+      break;
+    }
+    EXPECT_TRUE(training.wait_for(consequence, 60.0)) << program;
+  }
+  const CommandResult result = training.finish(kDeadline_s);
+  ASSERT_EQ(result.status, 0) << result.output;
+  EXPECT_EQ(fingerprint(run), kFingerprint);
 }
 
 TEST(Training, TwiceTheSameSeedGivesTheSameBitsAlsoWhenProcessesAreSlowedAtRandom) {
@@ -98,9 +125,8 @@ TEST(Training, TwiceTheSameSeedGivesTheSameBitsAlsoWhenProcessesAreSlowedAtRando
   const auto other = temporary.path() / "other";
   const CommandResult first_result = run_command(train_command(first), kDeadline_s);
   ASSERT_EQ(first_result.status, 0) << first_result.output;
-  // The delays are no part of what is computed, so they must not be part of the fingerprint.
   const CommandResult slowed_result =
-      run_command(train_command(slowed, {"--set", "run.delay_ms_max=60"}), kDeadline_s);
+      run_command(train_command(slowed), kDeadline_s, {{kTestDelayVariable, "60"}});
   ASSERT_EQ(slowed_result.status, 0) << slowed_result.output;
   EXPECT_EQ(fingerprint(first), fingerprint(slowed));
 
@@ -115,12 +141,12 @@ TEST(Training, InterruptedAndResumedItEndsWithTheSameBits) {
   ASSERT_EQ(run_command(train_command(whole), kDeadline_s).status, 0);
 
   // Slowed, so that there is something to interrupt. Twice: in the first phase and in the second.
-  const auto slow = train_command(parts, {"--set", "run.delay_ms_max=100"});
   int interruptions = 0;
   for (const char* phase : {"\"MoP\"", "\"BP\""}) {
     Command command(phase == std::string("\"MoP\"")
-                        ? slow
-                        : std::vector<std::string>{kCorridor, "resume", parts});
+                        ? train_command(parts)
+                        : std::vector<std::string>{kCorridor, "resume", parts},
+                    {{kTestDelayVariable, "100"}});
     const auto metrics = parts / "metrics" / "learner.jsonl";
     const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
     std::string text;

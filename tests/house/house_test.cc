@@ -168,6 +168,15 @@ TEST(House, TheDrivingDomainKnowsNoSimulatorSocketClockOrLog) {
   }
 }
 
+TEST(House, TheCalendarIsForPeopleOnly) {
+  static const std::regex kCalendar(
+      R"(system_clock|CLOCK_REALTIME|gettimeofday|\btime\((nullptr|NULL|0)\))");
+  for (const std::string& file : sources()) {
+    if (file.starts_with("cluster/")) continue;  // manifests, and events for TensorBoard
+    EXPECT_FALSE(std::regex_search(content_of(kRoot / file), kCalendar)) << file;
+  }
+}
+
 TEST(House, RandomNumbersComeFromCountersOnly) {
   static const std::regex kGenerator(
       R"(std::(mt19937|random_device|default_random_engine|uniform_\w+_distribution|rand\b))");

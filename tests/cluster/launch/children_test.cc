@@ -134,11 +134,11 @@ TEST_F(ChildrenTest, WhosePulseStandsStillForTooLongAreKilledAsHung) {
 TEST_F(ChildrenTest, WhosePulseGoesOnAreNotHungHoweverLongTheyLive) {
   // Its pulse is the memory behind a descriptor: the shell writes the byte that it is told.
   const std::string beat = pipe("beat"), beaten = pipe("beaten");
-  children_.start(script("living", "exec 3< " + beat +
-                                       "\nwhile read byte <&3; do\n"
-                                       "printf \"\\\\$byte\" 1<> /proc/self/fd/$CORRIDOR_PULSE\n"
-                                       "echo > " +
-                                       beaten + "\ndone"));
+  children_.start(script("living",
+                         "while read byte; do\n"
+                         "printf \"\\\\$byte\" 1<> /proc/self/fd/$CORRIDOR_PULSE\n"
+                         "echo > " +
+                             beaten + "\ndone < " + beat));
   std::ofstream tell(beat);
   for (int i = 0; i < 4; ++i) {
     tell << "00" << i << std::endl;

@@ -41,8 +41,7 @@ TEST(ConfigKeys, ThatMayChangeInTheMiddleOfATrainingAreTheseAndDocumented) {
   const std::string keys = keys_where([](Heeds heeds) { return !decides_result(heeds); });
   EXPECT_EQ(keys,
             "schedule.checkpoint_every_steps, schedule.checkpoints_kept, [evaluation], "
-            "run.transport, run.host, run.replay_port, run.learner_port, run.peer_timeout_s, "
-            "run.delay_ms_max");
+            "run.transport, run.host, run.replay_port, run.learner_port, run.peer_timeout_s");
   EXPECT_THAT(document("operations.md"), HasSubstr(keys));
 }
 

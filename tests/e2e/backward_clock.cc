@@ -1,0 +1,31 @@
+// For LD_PRELOAD: the calendar's clock of the process runs backwards, as one that is being set does
+// for a moment. Other clocks are as they are.
+#include <sys/syscall.h>
+#include <sys/time.h>
+#include <time.h>
+#include <unistd.h>
+
+extern "C" {
+
+int clock_gettime(clockid_t clock, timespec* time) noexcept {
+  if (clock != CLOCK_REALTIME) return static_cast<int>(syscall(SYS_clock_gettime, clock, time));
+  timespec up{};
+  syscall(SYS_clock_gettime, CLOCK_MONOTONIC, &up);
+  *time = {2'000'000'000 - up.tv_sec, 999'999'999 - up.tv_nsec};
+  return 0;
+}
+
+int gettimeofday(timeval* time, void*) noexcept {
+  timespec now{};
+  clock_gettime(CLOCK_REALTIME, &now);
+  *time = {now.tv_sec, now.tv_nsec / 1000};
+  return 0;
+}
+
+time_t time(time_t* copy) noexcept {
+  timespec now{};
+  clock_gettime(CLOCK_REALTIME, &now);
+  if (copy != nullptr) *copy = now.tv_sec;
+  return now.tv_sec;
+}
+}
