@@ -1,7 +1,6 @@
 #include "cluster/train.h"
 
 #include <algorithm>
-#include <chrono>
 #include <csignal>
 
 #include "cluster/launch/local.h"
@@ -9,11 +8,7 @@
 #include "cluster/launch/plan.h"
 #include "cluster/launch/run_lock.h"
 #include "cluster/new_run.h"
-#include "cluster/watch/display.h"
-#include "cluster/watch/line_tail.h"
-#include "cluster/watch/tensorboard.h"
-#include "cluster/watch/training_progress.h"
-#include "cluster/watch/training_scalars.h"
+#include "cluster/watch/training_monitor.h"
 #include "proto/base/failure.h"
 #include "proto/base/json.h"
 #include "proto/base/text.h"
@@ -31,97 +26,6 @@
 
 namespace corridor::cluster {
 namespace {
-
-// Seconds since 1970.
-double wall_time_s() {
-  return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
-}
-
-// Metrics files -> what people see, here and in TensorBoard.
-class Monitor {
- public:
-  Monitor(const RunConfig& config, const RunDirectory& directory, std::uint64_t rounds_done)
-      : progress_(config, rounds_done, available_cores(), monotonic_s()),
-        scalars_(config),
-        learner_(directory.metrics(kLearnerName)),
-        replay_(directory.metrics(kReplayName)) {
-    for (int i = 0; i < config.run.actors; ++i) {
-      actors_.emplace_back(directory.metrics(actor_name(i)));
-    }
-    write_events([&] {
-      events_.emplace(directory.tensorboard(), wall_time_s());
-      go_on_from(rounds_done);
-    });
-  }
-
-  void announce(const std::string& line) { display_.announce(line); }
-  std::int64_t steps_done() const { return progress_.steps_done(); }
-
-  void tick() {
-    const double now_s = monotonic_s();
-    for_lines(learner_, [&](const MetricsLine& line) {
-      progress_.on_learner(line, now_s);
-      scalars_.on_learner(line);
-    });
-    for_lines(replay_, [&](const MetricsLine& line) {
-      progress_.on_replay(line);
-      scalars_.on_replay(line);
-    });
-    for (std::size_t i = 0; i < actors_.size(); ++i) {
-      for_lines(actors_[i], [&](const MetricsLine& line) {
-        progress_.on_actor(line);
-        scalars_.on_actor(static_cast<int>(i), line);
-      });
-    }
-    const std::vector<StepScalars> ready = scalars_.take();
-    write_events([&] {
-      for (const StepScalars& at : ready) events_->write(at.step, at.values, wall_time_s());
-    });
-    if (display_.due(now_s)) display_.show(progress_.lines(), now_s);
-  }
-
-  // All processes have ended, and others go on from there.
-  void restarted(std::uint64_t rounds_done) {
-    tick();
-    write_events([&] { go_on_from(rounds_done); });
-  }
-
- private:
-  template <typename Action>
-  static void for_lines(LineTail& tail, const Action& action) {
-    for (const std::string& text : tail.read()) {
-      if (const auto line = parse_metrics_line(text)) action(*line);
-    }
-  }
-
-  void go_on_from(std::uint64_t rounds_done) {
-    const std::int64_t steps = scalars_.steps_before(rounds_done);
-    scalars_.go_back_to(steps);
-    events_->start(steps + 1, wall_time_s());
-  }
-
-  // No training ends because its events cannot be written.
-  template <typename Action>
-  void write_events(const Action& action) {
-    if (events_given_up_) return;
-    try {
-      action();
-    } catch (const Failure& failure) {
-      events_given_up_ = true;
-      announce(
-          fmt::format("{}; the training goes on without events for TensorBoard", failure.what()));
-    }
-  }
-
-  TrainingProgress progress_;
-  TrainingScalars scalars_;
-  std::optional<EventWriter> events_;
-  bool events_given_up_ = false;
-  LineTail learner_;
-  LineTail replay_;
-  std::vector<LineTail> actors_;
-  ProgressDisplay display_;
-};
 
 // "MoP, round 24 of 80: 12,288 of 40,960 steps"
 std::string position(const Schedule& schedule, std::uint64_t rounds_done) {
@@ -155,12 +59,13 @@ int supervise(const RunConfig& config, const RunDirectory& directory, std::uint6
               const std::string& program) {
   const Schedule schedule(config);
   const double start_s = monotonic_s();
-  Monitor monitor(config, directory, rounds_before);
+  TrainingMonitor monitor(schedule, config.run.actors, directory, rounds_before, available_cores(),
+                          start_s);
   Limits limits;
   // Before others take it for lost.
   limits.hung = Milliseconds(static_cast<std::int64_t>(config.run.peer_timeout_s * 1000.0 * 2 / 3));
   Supervision supervision;
-  supervision.tick = [&] { monitor.tick(); };
+  supervision.tick = [&] { monitor.tick(monotonic_s()); };
   supervision.progress = [&] { return static_cast<std::uint64_t>(monitor.steps_done()); };
   supervision.died = [&](const Ended& ended, bool all) {
     if (!all) {
@@ -169,14 +74,14 @@ int supervise(const RunConfig& config, const RunDirectory& directory, std::uint6
     }
     for (const std::string& line : clean_up(directory)) monitor.announce(line);
     const std::uint64_t rounds = rounds_done(directory);
-    monitor.restarted(rounds);
+    monitor.restarted(rounds, monotonic_s());
     monitor.announce(fmt::format("{}; all go on from {}", ended.cause(),
                                  rounds > 0 ? "the checkpoint of " + position(schedule, rounds)
                                             : std::string("the beginning")));
   };
   const Ending ending = run_together(training_plan(config.run, directory, program_directory()),
                                      kLearnerName, limits, supervision);
-  monitor.tick();
+  monitor.tick(monotonic_s());
 
   const std::uint64_t rounds = rounds_done(directory);
   if (ending.signal != 0) {

@@ -37,10 +37,10 @@ std::optional<double> TrainingProgress::Recent::mean() const {
   return sum / static_cast<double>(values.size());
 }
 
-TrainingProgress::TrainingProgress(const RunConfig& config, std::uint64_t rounds_done, int cores,
-                                   double now_s)
-    : schedule_(config),
-      actors_(config.run.actors),
+TrainingProgress::TrainingProgress(const Schedule& schedule, int actors, std::uint64_t rounds_done,
+                                   int cores, double now_s)
+    : schedule_(schedule),
+      actors_(actors),
       cores_(cores),
       phase_(phase_name(schedule_.phase_of(std::min(rounds_done, schedule_.rounds() - 1)))),
       steps_done_(static_cast<std::int64_t>(rounds_done) * schedule_.steps_per_round()) {

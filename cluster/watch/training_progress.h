@@ -22,7 +22,8 @@ namespace corridor::cluster {
 class TrainingProgress {
  public:
   // `rounds_done` before this start (resume); `cores` that all processes share.
-  TrainingProgress(const RunConfig& config, std::uint64_t rounds_done, int cores, double now_s);
+  TrainingProgress(const Schedule& schedule, int actors, std::uint64_t rounds_done, int cores,
+                   double now_s);
 
   void on_learner(const MetricsLine& line, double now_s);
   void on_actor(const MetricsLine& line);

@@ -5,7 +5,6 @@
 
 #include "proto/base/failure.h"
 #include "proto/run/metrics.h"
-#include "proto/settings/schedule.h"
 
 namespace corridor::cluster {
 namespace {
@@ -42,9 +41,9 @@ std::string full_name(const Tag& tag, const std::string& phase) {
 
 }  // namespace
 
-TrainingScalars::TrainingScalars(const RunConfig& config)
-    : steps_per_round_(Schedule(config).steps_per_round()),
-      actors_reached_(static_cast<std::size_t>(config.run.actors)) {}
+TrainingScalars::TrainingScalars(const Schedule& schedule, int actors)
+    : steps_per_round_(schedule.steps_per_round()),
+      actors_reached_(static_cast<std::size_t>(actors)) {}
 
 std::int64_t TrainingScalars::steps_before(std::uint64_t round) const {
   return static_cast<std::int64_t>(round) * steps_per_round_;

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "proto/run/metrics.h"
-#include "proto/settings/settings.h"
+#include "proto/settings/schedule.h"
 
 namespace corridor::cluster {
 
@@ -24,7 +24,7 @@ struct StepScalars {
 // values.
 class TrainingScalars {
  public:
-  explicit TrainingScalars(const RunConfig& config);
+  TrainingScalars(const Schedule& schedule, int actors);
 
   void on_actor(int actor, const MetricsLine& line);
   void on_learner(const MetricsLine& line);

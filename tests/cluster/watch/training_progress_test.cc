@@ -32,7 +32,7 @@ class Progress : public testing::Test {
                           std::map<std::string, double, std::less<>> values = {}) {
     return {phase, round, 0, std::move(values)};
   }
-  TrainingProgress progress_{config(), 0, kCores, 0.0};
+  TrainingProgress progress_{Schedule(config()), config().run.actors, 0, kCores, 0.0};
 };
 
 TEST_F(Progress, CountsStepsOverBothPhases) {
@@ -65,7 +65,7 @@ TEST_F(Progress, TakesTheSpeedFromTheLastHalfMinute) {
 }
 
 TEST_F(Progress, AResumedTrainingBeginsWhereItsCheckpointIs) {
-  TrainingProgress resumed(config(), 12, kCores, 50.0);
+  TrainingProgress resumed(Schedule(config()), config().run.actors, 12, kCores, 50.0);
   EXPECT_EQ(resumed.steps_done(), 2400);
   EXPECT_THAT(resumed.headline(), HasSubstr("BP  [############........]  60.0 %"));
   resumed.on_learner(line("BP", 12), 51.0);
@@ -89,7 +89,7 @@ TEST_F(Progress, ForgetsTheFiguresOfThePhaseBefore) {
 
 TEST_F(Progress, NamesTheSideThatTheOtherWaitsFor) {
   const auto lines = [&](double for_actors, double for_weights, double for_replay) {
-    TrainingProgress progress(config(), 0, kCores, 0.0);
+    TrainingProgress progress(Schedule(config()), config().run.actors, 0, kCores, 0.0);
     EXPECT_EQ(progress.lines().size(), 2u);
     progress.on_learner(line("MoP", 0,
                              {{time_metric(TimePart::kWaitForActors), for_actors},
@@ -126,7 +126,7 @@ TEST_F(Progress, NamesTheCoresWhenTheyAreBusyAndWhatTheyDo) {
   const int actors = config().run.actors;
   // Two cores, of which the actors keep `busy` and the learner half of one.
   const auto line_for = [&](double busy) {
-    TrainingProgress progress(config(), 0, 2, 0.0);
+    TrainingProgress progress(Schedule(config()), config().run.actors, 0, 2, 0.0);
     progress.on_learner(line("MoP", 0, times(time_metric(TimePart::kUpdate), 0.8, 5.0, 0.2)), 1.0);
     progress.on_actor(
         line("MoP", 0, times(time_metric(TimePart::kSimulate), 0.6, 10.0 * busy / actors, 0.4)));

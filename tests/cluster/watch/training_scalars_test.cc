@@ -25,7 +25,7 @@ StepScalars epsilon(std::int64_t step, double value) {
 }
 
 TEST(TrainingScalars, OfTheLearnerAndTheReplayHaveTagsByPhase) {
-  TrainingScalars scalars{RunConfig()};
+  TrainingScalars scalars(Schedule(RunConfig()), 2);
   scalars.on_learner(line(1, {{metric::kTdLoss, 0.5},
                               {time_metric(TimePart::kUpdate), 9.0},
                               {metric::kGreedyScore, 7.0}}));
@@ -40,14 +40,14 @@ TEST(TrainingScalars, OfTheLearnerAndTheReplayHaveTagsByPhase) {
 
 TEST(TrainingScalars, CountTheStepsOfBothPhases) {
   const RunConfig config;
-  TrainingScalars scalars(config);
+  TrainingScalars scalars(Schedule(config), 2);
   const std::uint64_t round = Schedule(config).first_round(Phase::kBp);
   scalars.on_learner(line(round, {{metric::kTdLoss, 0.5}}, "BP"));
   EXPECT_THAT(scalars.take(), ElementsAre(StepScalars{1'000'448 + 512, {{"train/bp/loss", 0.5}}}));
 }
 
 TEST(TrainingScalars, OfTheActorsAreTheirMeansOnceAllOfThemAreThere) {
-  TrainingScalars scalars{RunConfig()};
+  TrainingScalars scalars(Schedule(RunConfig()), 2);
   scalars.on_actor(0, line(1, {{metric::kEpisodicReturn, 10.0}, {metric::kEpisodes, 1.0}}));
   scalars.on_actor(0, line(3, {{metric::kEpsilon, 0.25}}));
   EXPECT_THAT(scalars.take(), IsEmpty());
@@ -59,7 +59,7 @@ TEST(TrainingScalars, OfTheActorsAreTheirMeansOnceAllOfThemAreThere) {
 }
 
 TEST(TrainingScalars, NeverGoBackWhenOneActorIsStartedAgain) {
-  TrainingScalars scalars{RunConfig()};
+  TrainingScalars scalars(Schedule(RunConfig()), 2);
   // Actor 1 dies before it tells of round 1, and tells of round 3 twice.
   scalars.on_actor(0, line(1, {{metric::kEpsilon, 1.0}}));
   scalars.on_actor(0, line(3, {{metric::kEpsilon, 0.5}}));
@@ -71,7 +71,7 @@ TEST(TrainingScalars, NeverGoBackWhenOneActorIsStartedAgain) {
 }
 
 TEST(TrainingScalars, ComeAgainAfterAllWentBack) {
-  TrainingScalars scalars{RunConfig()};
+  TrainingScalars scalars(Schedule(RunConfig()), 2);
   for (const std::uint64_t round : {1, 3}) {
     for (const int actor : {0, 1}) scalars.on_actor(actor, line(round, {{metric::kEpsilon, 1.0}}));
     scalars.on_learner(line(round, {{metric::kTdLoss, 1.0}}));
