@@ -54,7 +54,7 @@ class TrainingProgress {
   };
   void enter(const std::string& phase);
   void note(const char* process, const MetricsLine& line);
-  std::optional<double> mean(const std::string& process, const char* name) const;
+  std::optional<double> mean(const std::string& process, std::string_view name) const;
   // Of the processes of this name together.
   CoreTime cores_of(const std::string& process) const;
 
