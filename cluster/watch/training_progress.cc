@@ -82,7 +82,8 @@ void TrainingProgress::on_replay(const MetricsLine& line) {
   if (line.phase == phase_) note("replay", line);
 }
 
-std::optional<double> TrainingProgress::mean(const std::string& process, const char* name) const {
+std::optional<double> TrainingProgress::mean(const std::string& process,
+                                             const std::string& name) const {
   const auto found = recent_.find(fmt::format("{} {}", process, name));
   return found == recent_.end() ? std::nullopt : found->second.mean();
 }

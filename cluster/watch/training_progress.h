@@ -53,7 +53,7 @@ class TrainingProgress {
   };
   void enter(const std::string& phase);
   void note(const char* process, const MetricsLine& line);
-  std::optional<double> mean(const std::string& process, const char* name) const;
+  std::optional<double> mean(const std::string& process, const std::string& name) const;
   // Of the processes of this name together.
   CoreTime cores_of(const std::string& process) const;
 
