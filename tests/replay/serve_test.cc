@@ -136,11 +136,11 @@ TEST_F(ServeTest, ClientsGetWhatTheServiceAloneWouldAnswer) {
   EXPECT_EQ(line.at("round"), 31);
   EXPECT_EQ(line.at("step"), 32 * 20 * kActors);
   EXPECT_EQ(line.at(metric::kReplaySize), 150);
-  for (const char* name :
-       {metric::kReplayInserted, metric::kReplaySampled, metric::kSamplesPerInsert,
-        time_metric(TimePart::kWaitForActors), time_metric(TimePart::kWaitForLearner),
-        time_metric(TimePart::kInsert), time_metric(TimePart::kSample),
-        time_metric(TimePart::kTransport), kWallTimeMetric, kCpuTimeMetric}) {
+  for (const std::string& name : std::vector<std::string>{
+           metric::kReplayInserted, metric::kReplaySampled, metric::kSamplesPerInsert,
+           time_metric(TimePart::kWaitForActors), time_metric(TimePart::kWaitForLearner),
+           time_metric(TimePart::kInsert), time_metric(TimePart::kSample),
+           time_metric(TimePart::kTransport), kWallTimeMetric, kCpuTimeMetric}) {
     EXPECT_GT(line.at(name), 0.0) << name;
   }
 }

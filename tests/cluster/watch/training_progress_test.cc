@@ -114,7 +114,7 @@ TEST_F(Progress, NamesTheSideThatTheOtherWaitsFor) {
 }
 
 TEST_F(Progress, NamesTheCoresWhenTheyAreBusyAndWhatTheyDo) {
-  const auto times = [](const char* part, double share, double cpu_s, double for_others) {
+  const auto times = [](const std::string& part, double share, double cpu_s, double for_others) {
     return std::map<std::string, double, std::less<>>{
         {part, share},
         {time_metric(TimePart::kWaitForLearner), for_others},
