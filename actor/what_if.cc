@@ -17,11 +17,10 @@
 #include <utility>
 
 #include "proto/base/failure.h"
+#include "proto/system/clock.h"
 
 namespace corridor::actor {
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 // First byte of what the copy says; the rest is the result, or the error's text.
 constexpr std::uint8_t kReturned = 0;
@@ -85,11 +84,11 @@ class Copy {
   Copy& operator=(const Copy&) = delete;
 
   // All that it says until it ends; nothing when it has not ended by the deadline.
-  std::optional<Bytes> listen(Clock::time_point deadline) {
+  std::optional<Bytes> listen(TimePoint deadline) {
     Bytes bytes;
     std::array<std::uint8_t, 4096> buffer;
     while (true) {
-      const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - Clock::now());
+      const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - steady_now());
       if (left.count() <= 0) return std::nullopt;
       pollfd ready{result_, POLLIN, 0};
       if (poll(&ready, 1, static_cast<int>(left.count())) <= 0) continue;
@@ -117,7 +116,7 @@ class Copy {
 
 Bytes what_if(const std::function<Bytes()>& function, std::chrono::milliseconds patience) {
   Copy copy(function);
-  std::optional<Bytes> bytes = copy.listen(Clock::now() + patience);
+  std::optional<Bytes> bytes = copy.listen(steady_now() + patience);
   if (!bytes) throw Failure("a what-if has no result after {} ms", patience.count());
   const int status = copy.wait();
   if (WIFSIGNALED(status)) {

@@ -2,17 +2,12 @@
 
 #include <sys/resource.h>
 
-#include <chrono>
-
 #include "proto/base/failure.h"
 #include "proto/base/json.h"
+#include "proto/system/clock.h"
 
 namespace corridor {
 namespace {
-
-double now_s() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 // The largest share of the process that has been in memory.
 double peak_memory_mb() {
@@ -31,7 +26,8 @@ bool ends_torn(const std::filesystem::path& file) {
 
 }  // namespace
 
-MetricsWriter::MetricsWriter(const std::filesystem::path& file) : file_(file), start_s_(now_s()) {
+MetricsWriter::MetricsWriter(const std::filesystem::path& file)
+    : file_(file), start_s_(monotonic_s()) {
   const bool torn = ends_torn(file);
   out_.open(file, std::ios::binary | std::ios::app);
   if (!out_) throw Failure("cannot open {} to append metrics to it", file.string());
@@ -43,7 +39,7 @@ void MetricsWriter::write(const char* phase, std::uint64_t round, std::int64_t s
   OrderedJson line = {{"phase", phase},
                       {"round", round},
                       {"step", step},
-                      {"time_s", now_s() - start_s_},
+                      {"time_s", monotonic_s() - start_s_},
                       {"memory_mb", peak_memory_mb()}};
   for (const auto& [name, value] : values) line[name] = value;  // NaN and infinity become null
   out_ << line.dump() << '\n' << std::flush;

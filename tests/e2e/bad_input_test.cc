@@ -3,7 +3,6 @@
 #include <sys/socket.h>
 
 #include <csignal>
-#include <thread>
 
 #include "proto/base/random.h"
 #include "proto/run/checkpoints.h"
@@ -259,10 +258,7 @@ TEST_F(BadInput, AKilledLauncherTakesEverythingWithIt) {
   ASSERT_GE(processes_with(run.string()).size(), 5u);
   training.signal(SIGKILL);
   EXPECT_EQ(training.finish(10.0).status, 137);
-  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(20);
-  while (!processes_with(run.string()).empty() && std::chrono::steady_clock::now() < deadline) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(50));
-  }
+  EXPECT_TRUE(eventually([&] { return processes_with(run.string()).empty(); }, 20.0));
   expect_nothing_left(run);
 }
 

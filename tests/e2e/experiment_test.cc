@@ -53,15 +53,13 @@ TEST_F(Experiment, KilledAndStoppedItGoesOnAndGivesTheSameResults) {
   for (const int signal : {SIGKILL, SIGTERM}) {
     Command started(command(broken));
     const auto seen = broken / "runs" / (signal == SIGKILL ? "tiny-1" : "tiny-2") / "checkpoints";
-    for (int i = 0; i < 600 && !std::filesystem::exists(seen); ++i) usleep(50'000);
-    ASSERT_TRUE(std::filesystem::exists(seen)) << seen;
+    ASSERT_TRUE(eventually([&] { return std::filesystem::exists(seen); }, 60.0)) << seen;
     started.signal(signal);
     const CommandResult stopped = started.finish(kDeadline_s);
     EXPECT_EQ(stopped.status, 128 + signal) << stopped.output;
     EXPECT_EQ(stopped.output.find("go on with the same command") != std::string::npos,
               signal == SIGTERM);
-    for (int i = 0; i < 100 && !processes_with(broken.string()).empty(); ++i) usleep(50'000);
-    EXPECT_TRUE(processes_with(broken.string()).empty());
+    EXPECT_TRUE(eventually([&] { return processes_with(broken.string()).empty(); }, 20.0));
   }
   const CommandResult done = run_command(command(broken), kDeadline_s);
   ASSERT_EQ(done.status, 0) << done.output;

@@ -168,10 +168,13 @@ TEST(House, TheDrivingDomainKnowsNoSimulatorSocketClockOrLog) {
   }
 }
 
-TEST(House, TheCalendarIsForPeopleOnly) {
+TEST(House, TheClockIsReadInOnePlaceAndTheCalendarForPeopleOnly) {
   static const std::regex kCalendar(
       R"(system_clock|CLOCK_REALTIME|gettimeofday|\btime\((nullptr|NULL|0)\))");
   for (const std::string& file : sources()) {
+    if (file != "proto/system/clock.h") {
+      EXPECT_EQ(content_of(kRoot / file).find("steady_clock"), std::string::npos) << file;
+    }
     if (file.starts_with("cluster/")) continue;  // manifests, and events for TensorBoard
     EXPECT_FALSE(std::regex_search(content_of(kRoot / file), kCalendar)) << file;
   }

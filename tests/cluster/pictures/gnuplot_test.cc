@@ -31,8 +31,8 @@ TEST(Gnuplot, SaysInOneLineWhatIsWrongWithAScript) {
 }
 
 TEST(Gnuplot, IsKilledAtTheDeadline) {
-  EXPECT_THAT([] { run_gnuplot("while (1) { x = 1 }\n", std::chrono::milliseconds(100)); },
-              ThrowsMessage<Failure>(HasSubstr("not done within 0.1 s")));
+  EXPECT_THAT([] { run_gnuplot("while (1) { x = 1 }\n", std::chrono::milliseconds(0)); },
+              ThrowsMessage<Failure>(HasSubstr("not done within 0 s")));
 }
 
 TEST(Gnuplot, ThatIsMissingIsNamedWithItsPackage) {
