@@ -15,8 +15,11 @@ using testing::HasSubstr;
 
 constexpr Duration kPatience{5000};  // never used up when all is well
 
-Weights weights(std::uint64_t version) {
-  return {version, {{{1.0f * static_cast<float>(version)}, {2.0f}}}};
+Weights weights_of(std::uint64_t version) {
+  Weights weights{version, {}};
+  weights.networks[NetworkId::kMop] = {static_cast<float>(version)};
+  weights.networks[NetworkId::kBp] = {2.0f};
+  return weights;
 }
 
 class PublisherTest : public testing::Test {
@@ -51,46 +54,46 @@ class PublisherTest : public testing::Test {
 };
 
 TEST_F(PublisherTest, AnswersWithTheNewestTwoVersions) {
-  for (const std::uint64_t version : {7, 8, 9}) publisher_.publish(weights(version));
+  for (const std::uint64_t version : {7, 8, 9}) publisher_.publish(weights_of(version));
   Client client = actor(0);
   for (const std::uint64_t version : {9, 8}) {
     ask(client, version);
     publisher_.service(kPatience);
-    EXPECT_EQ(answer(client), LearnerReply(weights(version)));
+    EXPECT_EQ(answer(client), LearnerReply(weights_of(version)));
   }
   ask(client, 7);
   EXPECT_THAT(refusal(client), HasSubstr("weights 7 wanted, 8 to 9 are kept"));
 }
 
 TEST_F(PublisherTest, ParksAQuestionUntilItsVersionIsPublished) {
-  publisher_.publish(weights(0));
+  publisher_.publish(weights_of(0));
   Client first = actor(0), second = actor(1);
   ask(first, 1);
   publisher_.service(kPatience);
   ask(second, 2);
   publisher_.service(kPatience);
   EXPECT_FALSE(first.receive(Duration::zero()));
-  publisher_.publish(weights(1));
-  EXPECT_EQ(answer(first), LearnerReply(weights(1)));
+  publisher_.publish(weights_of(1));
+  EXPECT_EQ(answer(first), LearnerReply(weights_of(1)));
   EXPECT_FALSE(second.receive(Duration::zero()));
-  publisher_.publish(weights(2));
-  EXPECT_EQ(answer(second), LearnerReply(weights(2)));
+  publisher_.publish(weights_of(2));
+  EXPECT_EQ(answer(second), LearnerReply(weights_of(2)));
 }
 
 TEST_F(PublisherTest, AnswersARestartedActorsQuestionOnly) {
-  publisher_.publish(weights(0));
+  publisher_.publish(weights_of(0));
   Client before = actor(0);
   ask(before, 1);
   publisher_.service(kPatience);
   Client after = actor(0);
   ask(after, 1);
   publisher_.service(kPatience);
-  publisher_.publish(weights(1));
-  EXPECT_EQ(answer(after), LearnerReply(weights(1)));
+  publisher_.publish(weights_of(1));
+  EXPECT_EQ(answer(after), LearnerReply(weights_of(1)));
 }
 
 TEST_F(PublisherTest, SumsASelectionOnceAllActorsHaveReported) {
-  publisher_.publish(weights(4));
+  publisher_.publish(weights_of(4));
   Client first = actor(0), second = actor(1);
   report(second, {5, 3, 30, 0.5, 2});
   EXPECT_EQ(publisher_.selection(5), std::nullopt);
@@ -102,11 +105,11 @@ TEST_F(PublisherTest, SumsASelectionOnceAllActorsHaveReported) {
 }
 
 TEST_F(PublisherTest, ForgetsTheSelectionsOfRoundsThatAreOver) {
-  publisher_.publish(weights(4));
+  publisher_.publish(weights_of(4));
   Client first = actor(0), second = actor(1);
   report(first, {4, 1, 1, 1.0, 0});
   report(second, {4, 1, 1, 1.0, 0});
-  publisher_.publish(weights(5));
+  publisher_.publish(weights_of(5));
   EXPECT_EQ(publisher_.selection(4), std::nullopt);
   report(first, {4, 1, 1, 1.0, 0});  // a late repetition
   report(second, {4, 1, 1, 1.0, 0});
@@ -114,7 +117,7 @@ TEST_F(PublisherTest, ForgetsTheSelectionsOfRoundsThatAreOver) {
 }
 
 TEST_F(PublisherTest, RefusesWhatIsImpossible) {
-  publisher_.publish(weights(4));
+  publisher_.publish(weights_of(4));
   Client stranger = actor(2);
   ask(stranger, 4);
   EXPECT_THAT(refusal(stranger), HasSubstr("client 2 of a run with 2 actors"));
@@ -124,7 +127,7 @@ TEST_F(PublisherTest, RefusesWhatIsImpossible) {
 }
 
 TEST_F(PublisherTest, RefusesAndCountsWhatIsMalformed) {
-  publisher_.publish(weights(4));
+  publisher_.publish(weights_of(4));
   Client client = actor(0);
   client.send(Bytes(16, std::byte{0xff}));
   EXPECT_NE(refusal(client), "");
