@@ -145,6 +145,13 @@ TEST(RunConfig, ALongListOfSpeedChangesWouldNotFitAByte) {
               HasSubstr("a list of 1 to 28 numbers"));
 }
 
+TEST(RunConfig, KeysThatThereAreNoMoreMayStillSayWhatIsAlwaysSo) {
+  EXPECT_EQ(to_toml(parse("[run]\ndelay_ms_max = 0.0")), to_toml({}));
+  EXPECT_EQ(fault_in("[run]\ndelay_ms_max = 40.0"),
+            "test.toml:2: run.delay_ms_max = 40.0: there is no such key any more: tests set "
+            "CORRIDOR_TEST_DELAY_MS");
+}
+
 TEST(RunConfig, AWorldIsRefusedByTheNameThatItHadAndNamedAsItIsCalledNow) {
   EXPECT_EQ(fault_in("[dynamics]\nworld = \"webots\""),
             "test.toml:2: dynamics.world = \"webots\": it is called \"rigid\" now");
