@@ -16,7 +16,7 @@ using testing::HasSubstr;
 constexpr Duration kPatience{5000};  // never used up when all is well
 
 Weights weights(std::uint64_t version) {
-  return {version, {{{1.0f * static_cast<float>(version)}, {2.0f}}}};
+  return {version, {{{{1.0f * static_cast<float>(version)}, {2.0f}}}}};
 }
 
 class PublisherTest : public testing::Test {
