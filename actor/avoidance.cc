@@ -22,7 +22,7 @@ using driving::Vehicle;
 using Actions = std::vector<std::uint8_t>;
 
 // An attempt takes milliseconds.
-constexpr std::chrono::milliseconds kPatience{10'000};
+constexpr std::chrono::milliseconds kAttemptPatience{10'000};
 
 bool in_sight(const Scene& scene, const Collision& collision, const EgoSettings& size) {
   const Vehicle* other = driving::find_vehicle(scene, collision.other);
@@ -106,7 +106,7 @@ class Recording {
             return pack(
                 drive_on(episode_, first_actions, actions + kMarginSteps, collision_, settings_));
           },
-          kPatience));
+          kAttemptPatience));
       return attempt;
     });
   }

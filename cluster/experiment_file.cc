@@ -15,9 +15,9 @@ namespace corridor::cluster {
 namespace {
 
 // One table of the file; every key that is asked for is known.
-class Table {
+class TableReader {
  public:
-  Table(const Json& table, std::string place) : table_(table), place_(std::move(place)) {}
+  TableReader(const Json& table, std::string place) : table_(table), place_(std::move(place)) {}
 
   template <typename T>
   T required(const char* key) {
@@ -101,7 +101,7 @@ EvaluationWorld parse_world(const std::string& text, const std::filesystem::path
   return world;
 }
 
-TrainingArm parse_training(Table& table, const std::filesystem::path& folder,
+TrainingArm parse_training(TableReader& table, const std::filesystem::path& folder,
                            const std::vector<std::string>& planners,
                            const std::vector<std::uint64_t>& training_seeds) {
   constexpr const char* kNameCharacters =
@@ -155,7 +155,7 @@ void check_from(const TrainingArm& arm, const std::vector<TrainingArm>& training
 
 Experiment load_experiment(const std::filesystem::path& file) {
   const Json document = load_toml(file);
-  Table table(document, file.string());
+  TableReader table(document, file.string());
   Experiment experiment;
   const auto planners = table.required<std::vector<std::string>>("planners");
   const auto training_seeds = table.required<std::vector<std::uint64_t>>("training_seeds");
@@ -170,7 +170,8 @@ Experiment load_experiment(const std::filesystem::path& file) {
   }
   std::set<std::string> names;
   for (const Json& entry : trainings) {
-    Table training(entry, fmt::format("{}: [[training]] {}", file.string(), names.size() + 1));
+    TableReader training(entry,
+                         fmt::format("{}: [[training]] {}", file.string(), names.size() + 1));
     if (!entry.is_object()) throw Failure("{} is no table", training.place());
     experiment.trainings.push_back(
         parse_training(training, file.parent_path(), planners, training_seeds));

@@ -11,7 +11,6 @@
 namespace corridor::learner {
 namespace {
 
-constexpr Duration kGlance{1};
 constexpr const char* kPeer = "replay server";
 
 // `batch` becomes rows first, first + n, first + 2n ... of `drawn`.

@@ -23,6 +23,9 @@ inline constexpr std::uint32_t kRowsPerStep = 512;
 // the timing, and the learner trains on one step's batches while the server draws the next.
 inline constexpr std::uint32_t kDepth = 2;
 
+// A look whether a message has come, where there is nothing else to do.
+inline constexpr Duration kGlance{1};
+
 struct Block {
   std::uint32_t batches = 0;  // as granted
   std::uint32_t batch_size = 0;

@@ -15,7 +15,6 @@ namespace corridor::learner {
 namespace {
 
 constexpr std::chrono::minutes kHangs{30};  // no round of any scenario takes that long
-constexpr Duration kGlance{1};
 constexpr std::int64_t kStepsPerReport = 2500;
 
 double between(double first, double last, double progress) {

@@ -11,7 +11,6 @@
 namespace corridor::vehicle {
 namespace {
 
-constexpr double kGravity_mps2 = 9.81;
 constexpr double kContactErp = 0.6;  // highway.wbt
 // Cruise control asks for so much of the speed's error a second.
 constexpr double kCruiseGain_per_s = 5.0;

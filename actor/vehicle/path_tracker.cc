@@ -8,7 +8,6 @@
 namespace corridor::vehicle {
 namespace {
 
-constexpr double kGravity_mps2 = 9.81;
 // Webots' tyres do not slip: as stiff as makes no difference, and the equations stay well-behaved.
 constexpr double kNoSlipStiffness = 60.0;
 

@@ -3,6 +3,8 @@
 
 namespace corridor::vehicle {
 
+inline constexpr double kGravity_mps2 = 9.81;
+
 // A car with four wheels, front driven and front steered. Positions from the middle of the rear
 // axle: x ahead, z up.
 struct CarModel {

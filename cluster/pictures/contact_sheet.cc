@@ -9,7 +9,7 @@ namespace corridor::cluster {
 namespace {
 
 constexpr double kMargin = 24.0, kTitleHeight = 44.0, kLabelHeight = 22.0, kGap = 8.0;
-constexpr RoadView kRoad;
+constexpr RoadView kSheetRoad;
 constexpr int kMostRows = 200;
 
 struct Row {
@@ -49,7 +49,7 @@ std::vector<Row> rows_of(const std::vector<Clip>& clips, double interval_s) {
 Canvas contact_sheet(const std::vector<Clip>& clips, double interval_s) {
   CORRIDOR_CHECK(!clips.empty() && interval_s > 0.0, "{} clips", clips.size());
   const bool one = clips.size() == 1;
-  Canvas canvas{kRoad.width + 2 * kMargin, one ? kTitleHeight + kGap : 2 * kGap};
+  Canvas canvas{kSheetRoad.width + 2 * kMargin, one ? kTitleHeight + kGap : 2 * kGap};
   if (one) canvas.add(Text{{kMargin, 28}, 17, clips.front().title});
   for (const auto& [clip, time_s, label] : rows_of(clips, interval_s)) {
     const double top = canvas.height - kGap;
@@ -59,7 +59,7 @@ Canvas contact_sheet(const std::vector<Clip>& clips, double interval_s) {
                     step.command
                         ? fmt::format("{}, BP: {}", label, clip->trace.command_name(*step.command))
                         : label});
-    const Canvas road = road_from_above(*clip, time_s, kRoad);
+    const Canvas road = road_from_above(*clip, time_s, kSheetRoad);
     canvas.inset({kMargin, top + kLabelHeight}, road);
     canvas.height = top + kLabelHeight + road.height + 2 * kGap;
   }

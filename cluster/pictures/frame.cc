@@ -10,10 +10,10 @@
 namespace corridor::cluster {
 namespace {
 
-constexpr int kWidth = 1280;
-constexpr double kMargin = 24.0, kTitleHeight = 42.0, kPanelHeight = 210.0;
+constexpr int kFrameWidth = 1280;
+constexpr double kFrameMargin = 24.0, kFrameTitleHeight = 42.0, kPanelHeight = 210.0;
 constexpr double kChartWidth = 520.0, kChartHeight = 44.0, kChartEvery = 68.0;
-constexpr RoadView kRoad{.width = kWidth - 2 * kMargin};
+constexpr RoadView kFrameRoad{.width = kFrameWidth - 2 * kFrameMargin};
 
 constexpr double kHistoryEvery_s = 0.1;
 constexpr double kGapMax_m = 50.0;
@@ -163,19 +163,19 @@ void Frames::draw_history(Canvas& canvas, double time_s, double left, double top
 }
 
 Canvas Frames::at(double time_s) const {
-  const double top = kTitleHeight + road_height(clip_.trace, kRoad) + 20;
-  Canvas canvas{kWidth, 2.0 * std::floor((top + kPanelHeight) / 2)};
-  canvas.add(Text{{kMargin, 28}, 17, clip_.title});
-  canvas.add(Text{{kWidth - kMargin, 28},
+  const double top = kFrameTitleHeight + road_height(clip_.trace, kFrameRoad) + 20;
+  Canvas canvas{kFrameWidth, 2.0 * std::floor((top + kPanelHeight) / 2)};
+  canvas.add(Text{{kFrameMargin, 28}, 17, clip_.title});
+  canvas.add(Text{{kFrameWidth - kFrameMargin, 28},
                   17,
                   fmt::format("{:.1f} s", clip_.start_s + time_s),
                   kInk,
                   Anchor::kEnd});
-  canvas.inset({kMargin, kTitleHeight}, road_from_above(clip_, time_s, kRoad));
+  canvas.inset({kFrameMargin, kFrameTitleHeight}, road_from_above(clip_, time_s, kFrameRoad));
   const TracedStep& step = clip_.step_at(time_s);
-  draw_bp_values(canvas, clip_.trace, step, kMargin, top);
-  draw_mop_values(canvas, clip_, step, kMargin + 270, top);
-  draw_history(canvas, time_s, kWidth - kMargin - kChartWidth, top);
+  draw_bp_values(canvas, clip_.trace, step, kFrameMargin, top);
+  draw_mop_values(canvas, clip_, step, kFrameMargin + 270, top);
+  draw_history(canvas, time_s, kFrameWidth - kFrameMargin - kChartWidth, top);
   return canvas;
 }
 

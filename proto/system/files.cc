@@ -6,9 +6,9 @@
 
 #include <cerrno>
 #include <cstring>
-#include <utility>
 
 #include "proto/base/json.h"
+#include "proto/system/descriptor.h"
 
 namespace corridor {
 namespace {
@@ -20,26 +20,6 @@ constexpr const char* kTemporary = ".tmp-";
 
 // errno's text. The POSIX calls here, unlike streams, say what went wrong.
 std::string reason() { return std::strerror(errno); }
-
-// A file descriptor that is closed.
-class Descriptor {
- public:
-  explicit Descriptor(int fd) : fd_(fd) {}
-  ~Descriptor() { close(); }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-
-  int get() const { return fd_; }
-  bool valid() const { return fd_ >= 0; }
-  // Whether closing reported no error (a network file system tells of a full disk only here).
-  bool close() {
-    const int fd = std::exchange(fd_, -1);
-    return fd < 0 || ::close(fd) == 0;
-  }
-
- private:
-  int fd_;
-};
 
 bool write_all(int fd, std::string_view content) {
   while (!content.empty()) {

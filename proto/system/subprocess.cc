@@ -18,6 +18,7 @@
 
 #include "proto/base/failure.h"
 #include "proto/system/clock.h"
+#include "proto/system/descriptor.h"
 
 namespace corridor {
 namespace {
@@ -25,26 +26,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kOutputBytesMax = 64 << 20;
-
-class Descriptor {
- public:
-  explicit Descriptor(int descriptor = -1) : descriptor_(descriptor) {}
-  ~Descriptor() { reset(); }
-  Descriptor(Descriptor&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
-  Descriptor& operator=(Descriptor&& other) noexcept {
-    reset();
-    descriptor_ = std::exchange(other.descriptor_, -1);
-    return *this;
-  }
-
-  int get() const { return descriptor_; }
-  void reset() {
-    if (descriptor_ >= 0) close(std::exchange(descriptor_, -1));
-  }
-
- private:
-  int descriptor_;
-};
 
 [[noreturn]] void fail(const fs::path& program, int error) {
   throw Failure("cannot start {}: {}", program.string(), std::strerror(error));
@@ -97,8 +78,8 @@ class Child {
       pid_ = -1;
       fail(program, error);
     }
-    output_.write_end.reset();
-    errors_.write_end.reset();
+    output_.write_end.close();
+    errors_.write_end.close();
     // glibc 2.36 declares pidfd_open for C only.
     end_ = Descriptor(static_cast<int>(syscall(SYS_pidfd_open, pid_, 0)));
     if (end_.get() >= 0) return;
@@ -139,14 +120,14 @@ class Child {
     int status = 0;
     waitpid(pid_, &status, 0);
     pid_ = -1;
-    end_.reset();
+    end_.close();
     return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   }
 
   static void read_some(Descriptor& stream, std::string& text) {
     char buffer[65536];
     const ssize_t count = read(stream.get(), buffer, sizeof buffer);
-    if (count == 0 || (count < 0 && errno != EINTR)) stream.reset();
+    if (count == 0 || (count < 0 && errno != EINTR)) stream.close();
     if (count > 0 && text.size() < kOutputBytesMax) {
       text.append(buffer, static_cast<std::size_t>(count));
     }

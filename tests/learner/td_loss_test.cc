@@ -14,15 +14,15 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-constexpr int kActions = 3;
-const RowLayout kLayout{1};
+constexpr int kThreeActions = 3;
+const RowLayout kRow{1};
 
 // observation, next observation, action, return, discount, and those of the risk
 std::vector<float> row(float action, float n_step_return, float discount) {
   return {0.0f, 0.0f, action, n_step_return, discount, -7.0f, 0.5f};
 }
-const ReturnColumns kReward{kLayout.n_step_return(), kLayout.discount()};
-const ReturnColumns kRisk{kLayout.risk_return(), kLayout.risk_discount()};
+const ReturnColumns kReward{kRow.n_step_return(), kRow.discount()};
+const ReturnColumns kRisk{kRow.risk_return(), kRow.risk_discount()};
 
 struct OneRow {
   std::vector<float> values = row(1, 0.5f, 0.9f);
@@ -33,8 +33,8 @@ struct OneRow {
   std::vector<std::size_t> next_actions = {2};
 
   TdLoss loss(double huber_delta = 1.0, const ReturnColumns& columns = kReward) const {
-    return td_loss(values, kLayout, columns, weights, {online, {}, target_next}, next_actions,
-                   kActions, huber_delta);
+    return td_loss(values, kRow, columns, weights, {online, {}, target_next}, next_actions,
+                   kThreeActions, huber_delta);
   }
 };
 
@@ -53,13 +53,13 @@ TEST(TdLoss, ReadsTheReturnAndTheDiscountOfItsColumns) {
 
 TEST(GreedyActions, TakeTheFirstOfTheLargestQValues) {
   const std::vector<float> q = {1, 3, 2, 5, 4, 5};
-  EXPECT_THAT(greedy_actions(q, {}, 2.0, kActions), ElementsAre(1u, 0u));
+  EXPECT_THAT(greedy_actions(q, {}, 2.0, kThreeActions), ElementsAre(1u, 0u));
 }
 
 TEST(GreedyActions, TakeTheWeightedRiskOffWhereItIsPositive) {
   const std::vector<float> q = {1, 3, 2, 5, 4, 5};
   const std::vector<float> risk = {0, 1, 0, -9, -1, -2};
-  EXPECT_THAT(greedy_actions(q, risk, 2.0, kActions), ElementsAre(2u, 0u));
+  EXPECT_THAT(greedy_actions(q, risk, 2.0, kThreeActions), ElementsAre(2u, 0u));
 }
 
 TEST(TdLoss, DoesNotBootstrapWhereTheDiscountIsZero) {

@@ -12,12 +12,12 @@
 namespace corridor::learner {
 namespace {
 
-double unit(std::uint64_t index) { return random_unit(7, Purpose::kBootstrap, {index}); }
+double uniform(std::uint64_t index) { return random_unit(7, Purpose::kBootstrap, {index}); }
 
 std::vector<float> numbers(std::size_t size, std::uint64_t number) {
   std::vector<float> values;
   for (std::size_t i = 0; i < size; ++i) {
-    values.push_back(static_cast<float>(2.0 * unit((number << 32) + i) - 1.0));
+    values.push_back(static_cast<float>(2.0 * uniform((number << 32) + i) - 1.0));
   }
   return values;
 }

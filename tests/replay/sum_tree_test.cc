@@ -13,10 +13,10 @@
 namespace corridor::replay {
 namespace {
 
-constexpr std::uint64_t kSeed = 7;
+constexpr std::uint64_t kDrawSeed = 7;
 
 double unit(std::uint64_t stream, std::uint64_t draw) {
-  return random_unit(kSeed, Purpose::kBootstrap, {stream, draw});
+  return random_unit(kDrawSeed, Purpose::kBootstrap, {stream, draw});
 }
 
 std::vector<std::uint64_t> slots_below(std::uint64_t count) {

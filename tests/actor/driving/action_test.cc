@@ -8,8 +8,8 @@ namespace corridor::driving {
 namespace {
 
 // Three changes with easy numbers, whatever the default.
-const DrivingSettings kSettings = [] {
-  DrivingSettings settings = default_settings();
+const DrivingSettings kThreeChanges = [] {
+  DrivingSettings settings = kSettings;
   settings.planner.speed_changes_mps = {-4.0, 0.0, 2.0};
   return settings;
 }();
@@ -38,35 +38,35 @@ TEST(StepActionsDeathTest, DoNotPackWhatDoesNotFit) {
 }
 
 TEST(TargetFor, IsRelativeToTheEgo) {
-  const Target target = target_for({1, 0}, ego_in_the_middle(), kSettings);
+  const Target target = target_for({1, 0}, ego_in_the_middle(), kThreeChanges);
   EXPECT_EQ(target.corridor, 8);
   EXPECT_DOUBLE_EQ(target.set_point_mps, 6.0);
-  EXPECT_EQ(target_for({-1, 1}, ego_in_the_middle(), kSettings).corridor, 6);
-  EXPECT_DOUBLE_EQ(target_for({0, 2}, ego_in_the_middle(), kSettings).set_point_mps, 12.0);
+  EXPECT_EQ(target_for({-1, 1}, ego_in_the_middle(), kThreeChanges).corridor, 6);
+  EXPECT_DOUBLE_EQ(target_for({0, 2}, ego_in_the_middle(), kThreeChanges).set_point_mps, 12.0);
 }
 
 TEST(TargetFor, ChangesTheSetPointNotTheSpeed) {
   Ego ego = ego_in_the_middle();
   ego.set_point_mps = 4.0;
-  EXPECT_DOUBLE_EQ(target_for({0, 2}, ego, kSettings).set_point_mps, 6.0);
+  EXPECT_DOUBLE_EQ(target_for({0, 2}, ego, kThreeChanges).set_point_mps, 6.0);
 }
 
 TEST(TargetFor, StaysWithinStandstillAndTheSpeedLimit) {
   Ego ego = ego_in_the_middle();
   ego.set_point_mps = 3.0;
-  EXPECT_EQ(target_for({0, 0}, ego, kSettings).set_point_mps, 0.0);
+  EXPECT_EQ(target_for({0, 0}, ego, kThreeChanges).set_point_mps, 0.0);
   ego.set_point_mps = 13.0;
-  EXPECT_EQ(target_for({0, 2}, ego, kSettings).set_point_mps, 13.89);
+  EXPECT_EQ(target_for({0, 2}, ego, kThreeChanges).set_point_mps, 13.89);
 }
 
 TEST(TargetFor, StaysWhereTheBodyIsOnTheRoad) {
   Ego ego = ego_in_the_middle();
   ego.d_m = 0.96;  // corridor 1; in corridor 0 the body would be 0.58 m off
-  EXPECT_EQ(target_for({-1, 1}, ego, kSettings).corridor, 1);
+  EXPECT_EQ(target_for({-1, 1}, ego, kThreeChanges).corridor, 1);
   ego.d_m = 0.1;
-  EXPECT_EQ(target_for({0, 1}, ego, kSettings).corridor, 1);
+  EXPECT_EQ(target_for({0, 1}, ego, kThreeChanges).corridor, 1);
   ego.d_m = 9.6 - 0.96;
-  EXPECT_EQ(target_for({1, 1}, ego, kSettings).corridor, 13);
+  EXPECT_EQ(target_for({1, 1}, ego, kThreeChanges).corridor, 13);
 }
 
 TEST(UnchangedSpeed, IsTheChangeNearestToNone) {

@@ -7,8 +7,6 @@
 namespace corridor::driving {
 namespace {
 
-const DrivingSettings kSettings = default_settings();
-
 // A stopped object at the right edge of the middle lane, 5 m ahead of the ego.
 constexpr Vehicle kObject = {.id = 3, .s_m = 105.0, .d_m = 3.6, .length_m = 1.6, .width_m = 0.65};
 

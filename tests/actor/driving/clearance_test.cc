@@ -11,7 +11,7 @@ namespace corridor::driving {
 namespace {
 
 DrivingSettings settings() {
-  DrivingSettings settings = default_settings();
+  DrivingSettings settings = kSettings;
   settings.planner.speed_changes_mps = {-4.0, 0.0, 2.0};
   settings.planner.clearance_steps = 2;
   return settings;

@@ -10,8 +10,6 @@
 namespace corridor::driving {
 namespace {
 
-const DrivingSettings kSettings = default_settings();
-
 Scene scene_with(const Vehicle& other) { return {ego_in_the_middle(), {other}}; }
 
 // The corridors in which the vehicle is seen.

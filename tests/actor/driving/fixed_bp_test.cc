@@ -7,8 +7,6 @@
 namespace corridor::driving {
 namespace {
 
-const DrivingSettings kSettings = default_settings();
-
 TEST(FixedBp, AsksForTheSameWhereThereIsALane) {
   const Lanes lanes(kSettings);
   FixedBp left(Command::kLeft, kSettings);

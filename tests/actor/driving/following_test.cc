@@ -7,8 +7,6 @@
 namespace corridor::driving {
 namespace {
 
-const DrivingSettings kSettings = default_settings();
-
 TEST(Following, BrakesAndClosesInOverTheSquareOfTheSpeed) {
   EXPECT_EQ(braking_way_m(6.0, 3.0), 6.0);
   EXPECT_EQ(closing_way_m(-6.0, 3.0), 6.0);

@@ -14,8 +14,8 @@ namespace corridor::driving {
 namespace {
 
 // Without clearances, but where a test is about them.
-const DrivingSettings kSettings = [] {
-  DrivingSettings settings = default_settings();
+const DrivingSettings kNoClearances = [] {
+  DrivingSettings settings = kSettings;
   settings.planner.clearance_steps = 0;
   return settings;
 }();
@@ -25,14 +25,14 @@ float gap(double gap_m) { return static_cast<float>(gap_m / (gap_m + 15.0)); }
 
 std::vector<float> mop_observation(const Scene& scene, Command command) {
   std::vector<float> out(28, kNaN);
-  observe_mop(scene, corridor_gaps(scene, kSettings), window_for(command, scene.ego, kSettings),
-              kSettings, out);
+  observe_mop(scene, corridor_gaps(scene, kNoClearances),
+              window_for(command, scene.ego, kNoClearances), kNoClearances, out);
   return out;
 }
 
 std::vector<float> bp_observation(const Scene& scene, Command previous) {
   std::vector<float> out(24, kNaN);
-  observe_bp(scene, previous, kSettings, out);
+  observe_bp(scene, previous, kNoClearances, out);
   return out;
 }
 
@@ -104,7 +104,7 @@ TEST(MopObservation, HasEveryIndexOfTheTable) {
 }
 
 TEST(MopObservation, EndsWithTheScaledClearancesHoweverTheWindowLies) {
-  DrivingSettings settings = default_settings();
+  DrivingSettings settings = kSettings;
   settings.planner.clearance_steps = 2;
   const Scene scene = {ego_in_the_middle(),
                        {{.id = 3, .s_m = 100.0, .d_m = 4.8 - 2.4, .speed_mps = 10.0}}};
@@ -189,7 +189,7 @@ TEST(MopObservation, ShowsASwitchWindowFromRightToLeft) {
 
 TEST(MopObservation, ShowsTheEgoInAClosedCorridor) {
   Scene scene = between_two();
-  scene.ego.d_m = Lanes(kSettings).corridor_centre_m(9);
+  scene.ego.d_m = Lanes(kNoClearances).corridor_centre_m(9);
   const auto out = mop_observation(scene, Command::kKeep);
   const int base = MopIndex::corridor(4);
   EXPECT_EQ(out[static_cast<std::size_t>(base + MopIndex::kInCorridor)], 1.0f);
@@ -251,7 +251,7 @@ TEST(BpObservation, CountsTheOffsetFromTheLanesCentreToTheLeft) {
 
 TEST(Observations, AreOfOrderOneInRandomScenes) {
   for (std::uint64_t seed = 0; seed < 1000; ++seed) {
-    const Scene scene = random_scene(seed, kSettings);
+    const Scene scene = random_scene(seed, kNoClearances);
     for (const Command command : {Command::kKeep, Command::kLeft, Command::kRight}) {
       for (const auto& out : {mop_observation(scene, command), bp_observation(scene, command)})
         for (const float x : out) ASSERT_TRUE(x >= -1.0f && x <= 1.0f) << x << " in scene " << seed;
@@ -260,7 +260,7 @@ TEST(Observations, AreOfOrderOneInRandomScenes) {
 }
 
 TEST(Observations, FollowOtherNumbersOfLanesAndCorridors) {
-  DrivingSettings settings = kSettings;
+  DrivingSettings settings = kNoClearances;
   settings.road.lanes = 5;
   settings.planner.corridors_per_lane = 3;
   const Scene scene = random_scene(1, settings);
@@ -276,10 +276,11 @@ TEST(Observations, FollowOtherNumbersOfLanesAndCorridors) {
 TEST(ObservationsDeathTest, RefuseARowOfAnotherLength) {
   const Scene scene = between_two();
   std::vector<float> out(27);
-  EXPECT_DEATH(observe_bp(scene, Command::kKeep, kSettings, out), "27 floats for 24");
-  EXPECT_DEATH(observe_mop(scene, corridor_gaps(scene, kSettings),
-                           window_for(Command::kKeep, scene.ego, kSettings), kSettings, out),
-               "27 floats for 28");
+  EXPECT_DEATH(observe_bp(scene, Command::kKeep, kNoClearances, out), "27 floats for 24");
+  EXPECT_DEATH(
+      observe_mop(scene, corridor_gaps(scene, kNoClearances),
+                  window_for(Command::kKeep, scene.ego, kNoClearances), kNoClearances, out),
+      "27 floats for 28");
 }
 
 }  // namespace

@@ -9,7 +9,7 @@ namespace corridor::driving {
 namespace {
 
 TEST(AfterStep, IsTheTrajectorysEndWithTheTargetsSetPoint) {
-  const DrivingSettings settings = default_settings();
+  const DrivingSettings settings = kSettings;
   const Ego ego = ego_in_the_middle();
   const MopAction action{1, 5};
   const Target target = target_for(action, ego, settings);

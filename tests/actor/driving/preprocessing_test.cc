@@ -10,12 +10,6 @@ namespace {
 
 using testing::ElementsAre;
 
-const DrivingSettings kSettings = default_settings();
-
-Ego ego_in_corridor(int corridor) {
-  return {.d_m = Lanes(kSettings).corridor_centre_m(corridor), .speed_mps = 10.0};
-}
-
 TEST(KeepWindow, IsTheLaneWithThreeOfFiveOpenWhereverInItTheEgoIs) {
   for (int corridor = 0; corridor < 15; ++corridor) {
     const Window window = keep_window(0, ego_in_corridor(corridor), kSettings);

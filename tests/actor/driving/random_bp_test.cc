@@ -10,8 +10,6 @@
 namespace corridor::driving {
 namespace {
 
-const DrivingSettings kSettings = default_settings();
-
 // Drives over an empty road as the random BP asks, one corridor a step.
 struct RandomDrive {
   std::vector<Command> commands;

@@ -8,8 +8,6 @@
 namespace corridor::driving {
 namespace {
 
-const DrivingSettings kSettings = default_settings();
-
 TEST(BpReward, IsMinusFiveForAChangeToTheLeftAtAnySpeed) {
   Ego ego = ego_in_the_middle();
   ego.speed_mps = 13.0;

@@ -8,8 +8,6 @@
 namespace corridor::driving {
 namespace {
 
-const DrivingSettings kSettings = default_settings();
-
 // The ego in the middle lane at 12 m/s behind a leader at 7 m/s.
 constexpr double kLaneCentre_m[] = {1.6, 4.8, 8.0};
 

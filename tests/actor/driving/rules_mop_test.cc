@@ -13,8 +13,6 @@
 namespace corridor::driving {
 namespace {
 
-const DrivingSettings kSettings = default_settings();
-
 // The ego after one step of the MoP's action, as the world does it.
 Ego advance(const Ego& ego, int action, const DrivingSettings& settings) {
   const Trajectory trajectory(ego, target_for(mop_action(action), ego, settings), settings);

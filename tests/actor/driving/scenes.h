@@ -13,7 +13,7 @@
 namespace corridor::driving {
 
 // Three lanes of 3.2 m, five corridors of 0.64 m each, whose centres are 0.32, 0.96, 1.6, ...
-inline DrivingSettings default_settings() { return driving_settings(RunConfig{}); }
+inline const DrivingSettings kSettings = driving_settings(RunConfig{});
 
 // In the middle of lane 1 (d = 4.8 m, corridor 7), front bumper at s = 100 m, at 10 m/s.
 inline Ego ego_in_the_middle() {
@@ -22,6 +22,10 @@ inline Ego ego_in_the_middle() {
 
 inline Ego ego_at(double d_m, double speed_mps) {
   return {.s_m = 100.0, .d_m = d_m, .speed_mps = speed_mps, .set_point_mps = speed_mps};
+}
+
+inline Ego ego_in_corridor(int corridor) {
+  return {.d_m = Lanes(kSettings).corridor_centre_m(corridor), .speed_mps = 10.0};
 }
 
 class Draws {

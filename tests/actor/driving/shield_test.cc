@@ -25,7 +25,7 @@ Vehicle leader(double gap_m, double speed_mps) {
 }
 
 MopAction shielded_in(const Scene& scene, const MopAction& action) {
-  return shielded(action, scene, default_settings());
+  return shielded(action, scene, kSettings);
 }
 
 std::vector<MopAction> all_actions() {
@@ -115,7 +115,7 @@ TEST(Shield, DoesNotMoveInFrontOfAVehicleThatCannotBrakeInTime) {
 
 TEST(Shield, ChangesNothingMoreOnceItHasChosen) {
   for (const double step_s : {0.5, 1.0}) {
-    DrivingSettings settings = default_settings();
+    DrivingSettings settings = kSettings;
     settings.step_s = step_s;
     int changed = 0;
     for (std::uint64_t seed = 0; seed < 60; ++seed) {
@@ -136,7 +136,7 @@ class AlwaysAccelerate : public MotionPlanner {
 };
 
 TEST(ShieldedMop, IsThePlannerBehindTheShield) {
-  const DrivingSettings settings = default_settings();
+  const DrivingSettings settings = kSettings;
   ShieldedMop mop(std::make_unique<AlwaysAccelerate>(), settings);
   const auto decide = [&](const Scene& scene) {
     return mop_action(

@@ -17,12 +17,6 @@ namespace {
 
 using testing::ElementsAre;
 
-const DrivingSettings kSettings = default_settings();
-
-Ego ego_in_corridor(int corridor) {
-  return {.d_m = Lanes(kSettings).corridor_centre_m(corridor), .speed_mps = 10.0};
-}
-
 TEST(Skills, OfThePaperHaveTheirNamedPlaces) {
   EXPECT_EQ(skill_of(Command::kKeep).name, std::string("keep"));
   EXPECT_EQ(skill_of(Command::kLeft).name, std::string("left"));

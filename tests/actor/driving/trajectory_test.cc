@@ -10,8 +10,6 @@
 namespace corridor::driving {
 namespace {
 
-const DrivingSettings kSettings = default_settings();
-
 // What the world makes of the ego after `t_s` on a trajectory.
 Ego ego_after(const Trajectory& trajectory, double t_s) {
   const TrajectoryPoint point = trajectory.at(t_s);

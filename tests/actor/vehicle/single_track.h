@@ -12,7 +12,6 @@ class SingleTrack {
  public:
   SingleTrack(const CarModel& car, double stiffness, double speed_mps)
       : car_(car), speed_mps_(speed_mps) {
-    constexpr double kGravity_mps2 = 9.81;
     rear_m_ = car.wheelbase_m * car.front_axle_share();
     front_m_ = car.wheelbase_m - rear_m_;
     front_npr_ = stiffness * car.mass_kg() * kGravity_mps2 * car.front_axle_share();
