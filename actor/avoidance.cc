@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "actor/driving/action.h"
+#include "actor/redrive.h"
 #include "actor/what_if.h"
 #include "proto/base/failure.h"
 #include "proto/settings/collision_kinds.h"
@@ -76,23 +77,27 @@ Attempt unpack(const Bytes& bytes) {
 class Recording {
  public:
   Recording(const RunConfig& config, const RecordedEpisode& recorded, world::World& world)
-      : settings_(driving_settings(config)), recorded_(recorded), episode_(config, world) {}
+      : settings_(driving_settings(config)),
+        recorded_(recorded),
+        steps_(static_cast<int>(recorded.summary.steps)),
+        episode_(config, world) {}
 
   // Drives it whole and fills in what it came to; then again up to `actions` before the collision.
   void drive(int actions, Hindsight& result) {
     std::vector<Scene> seen;
-    drive_as_recorded(episode_, recorded_, [&] { seen.push_back(episode_.scene()); });
+    drive_as_recorded(episode_, recorded_, start_of(recorded_),
+                      [&] { seen.push_back(episode_.scene()); });
     check_as_recorded(episode_, recorded_);
     seen.pop_back();  // where the collision has happened
     if (!episode_.summary().collision) {
-      throw Failure("{} ends without a collision", recorded_.file.string());
+      throw Failure("{} ends without a collision", recorded_.name().text());
     }
     collision_ = *episode_.summary().collision;
     result.collision = collision_;
-    result.step = recorded_.steps;
+    result.step = steps_;
     result.actions_in_sight = actions_in_sight(seen, collision_, settings_.ego);
-    episode_.begin(recorded_.start);
-    drive_up_to(recorded_.steps - actions);
+    episode_.begin(start_of(recorded_));
+    drive_up_to(steps_ - actions);
   }
 
   // By the last `actions`, at most as many as drive() has stopped before the collision.
@@ -113,13 +118,13 @@ class Recording {
 
   // Once more, from the start and without copies.
   void check_escape(int actions, const Actions& escape) {
-    episode_.begin(recorded_.start);
+    episode_.begin(start_of(recorded_));
     give_way(actions);
     const bool escapes =
         std::ranges::all_of(escape, [&](std::uint8_t action) { return step(episode_, action); });
     if (!escapes) {
       throw Failure("{}: an escape that was found in copies collides in the original",
-                    recorded_.file.string());
+                    recorded_.name().text());
     }
   }
 
@@ -130,12 +135,13 @@ class Recording {
 
   // As recorded up to `actions` before the collision; from there on as is tried.
   void give_way(int actions) {
-    drive_up_to(recorded_.steps - actions);
-    if (recorded_.driven_by_world()) episode_.take_over();
+    drive_up_to(steps_ - actions);
+    if (recorded_.driven_by_world) episode_.take_over();
   }
 
   DrivingSettings settings_;
   const RecordedEpisode& recorded_;
+  int steps_;
   Episode episode_;
   Collision collision_;
 };
@@ -193,7 +199,7 @@ Verdict Hindsight::by_reacting() const {
 Hindsight look_back(const RunConfig& config, const RecordedEpisode& recorded, world::World& world,
                     const HindsightLimits& limits) {
   CORRIDOR_CHECK(limits.actions >= 1, "{} actions", limits.actions);
-  const int actions_max = std::min(limits.actions, recorded.steps);
+  const int actions_max = std::min(limits.actions, static_cast<int>(recorded.summary.steps));
   Recording recording(config, recorded, world);
   Hindsight result;
   recording.drive(actions_max, result);

@@ -20,8 +20,9 @@
 #include "actor/driving/collision.h"
 #include "actor/driving/scene.h"
 #include "actor/escape_search.h"
-#include "actor/recorded_episode.h"
 #include "actor/world/world.h"
+#include "proto/run/hindsight_record.h"
+#include "proto/run/recorded_episode.h"
 #include "proto/settings/settings.h"
 
 namespace corridor::actor {
@@ -44,11 +45,6 @@ std::vector<std::uint8_t> evasive_actions(const driving::Scene& scene,
 // are the observations from the episode's start to the last one before the collision.
 int actions_in_sight(std::span<const driving::Scene> seen, const driving::Collision& collision,
                      const EgoSettings& ego);
-
-struct HindsightLimits {
-  int actions = 4;                   // the last so many, at most
-  std::int64_t attempts_max = 1000;  // for each number of actions
-};
 
 struct Hindsight {
   driving::Collision collision;

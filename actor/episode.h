@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "actor/driving/planner.h"
@@ -65,8 +66,8 @@ class Episode {
   const EpisodeSummary& summary() const { return summary_; }
   // The actions of each step so far (driving/action.h: pack); none for those that the world drove.
   const std::vector<std::uint8_t>& actions() const { return actions_; }
-  // Over every vehicle's position and speed at every step so far: equal for equal episodes.
-  std::uint64_t trajectory_hash() const { return hash_.value(); }
+  // Over every vehicle's position and speed at every step so far: equal for equal episodes. In hex.
+  std::string trajectory_hash() const { return hash_.hex(); }
 
  private:
   StepOutcome advance(const world::StepResult& result);

@@ -18,11 +18,6 @@ std::vector<std::uint8_t> actions(const std::vector<Step>& path) {
 
 }  // namespace
 
-const char* verdict_name(Verdict verdict) {
-  constexpr const char* kNames[] = {"avoidable", "unavoidable", "undecided"};
-  return kNames[static_cast<int>(verdict)];
-}
-
 EscapeSearch search_escape(
     std::int64_t attempts_max,
     const std::function<std::optional<Attempt>(std::span<const std::uint8_t>)>& attempt) {

@@ -8,15 +8,9 @@
 #include <span>
 #include <vector>
 
-namespace corridor::actor {
+#include "proto/run/hindsight_record.h"
 
-enum class Verdict {
-  kAvoidable,
-  kUnavoidable,  // every sequence collides
-  kUndecided,    // given up before all were tried
-};
-// "avoidable", "unavoidable", "undecided"
-const char* verdict_name(Verdict verdict);
+namespace corridor::actor {
 
 // What came of driving on with some first actions, and from there always with the first choice.
 struct Attempt {

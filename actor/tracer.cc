@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "actor/planners.h"
-#include "actor/recorded_episode.h"
+#include "actor/redrive.h"
 #include "proto/base/failure.h"
 #include "proto/settings/collision_kinds.h"
 
@@ -75,7 +75,7 @@ class Tracer {
     trace_.bp_reward = summary.bp_reward;
     trace_.lane_changes = summary.lane_changes;
     if (summary.collision) {
-      trace_.collision = {name_of(summary.collision->kind), summary.collision->other};
+      trace_.collision = {summary.collision->kind, summary.collision->other};
     }
     return std::move(trace_);
   }
@@ -137,12 +137,12 @@ class Tracer {
 
 EpisodeTrace trace_episode(const RunConfig& config, const Networks* networks,
                            const std::filesystem::path& file, world::World& world) {
-  const RecordedEpisode recorded = read_recorded_episode(config, file);
+  const RecordedEpisode recorded = read_own_episode(config, file);
   Tracer tracer(config, planner_pair(recorded.planner), networks, world);
-  tracer.begin(recorded.start);
+  tracer.begin(start_of(recorded));
   bool ended = false;
-  for (int i = 0; i < recorded.steps && !ended; ++i) {
-    ended = recorded.driven_by_world()
+  for (std::int64_t i = 0; i < recorded.summary.steps && !ended; ++i) {
+    ended = recorded.driven_by_world
                 ? tracer.step_by_world()
                 : tracer.step(driving::unpack(recorded.actions[static_cast<std::size_t>(i)]));
   }

@@ -130,10 +130,11 @@ void declare_hindsight(CLI::App& app, Arguments& arguments) {
       ->delimiter(',')
       ->check(CLI::NonNegativeNumber)
       ->allow_extra_args(false);
-  app.add_option("--actions", options.actions, "search the last so many actions")
+  app.add_option("--actions", options.limits.actions, "search the last so many actions")
       ->capture_default_str()
-      ->check(CLI::Range(1, 10));
-  app.add_option("--attempts", options.attempts, "give up a search after so many attempts")
+      ->check(CLI::Range(1, HindsightLimits::kActionsMax));
+  app.add_option("--attempts", options.limits.attempts_max,
+                 "give up a search after so many attempts")
       ->capture_default_str()
       ->check(CLI::PositiveNumber);
   app.add_option("--jobs", options.jobs, "processes at a time (the number of cores)");

@@ -9,9 +9,9 @@
 #include "cluster/pictures/contact_sheet.h"
 #include "cluster/pictures/film.h"
 #include "cluster/pictures/player.h"
-#include "cluster/results/evaluation_result.h"
 #include "proto/base/failure.h"
 #include "proto/base/format.h"
+#include "proto/run/evaluation_record.h"
 #include "proto/run/run_directory.h"
 #include "proto/system/files.h"
 
@@ -23,13 +23,10 @@ namespace fs = std::filesystem;
 // What is shown before a collision.
 constexpr double kBeforeCollision_s = 8.0;
 
-EpisodeTrace traced(const EvaluationPlace& place, std::vector<std::string> arguments) {
-  arguments.insert(arguments.end(), {"--networks", place.trained.root().string()});
-  return traced_by_actor(place.directory, arguments, std::chrono::minutes(10));
-}
+constexpr std::chrono::minutes kPatience{10};
 
 EpisodeTrace recorded(const EvaluationPlace& place, const fs::path& file) {
-  return traced(place, {"--trace", file.string()});
+  return traced_by_actor(place.directory, TraceTask{file, place.trained.root()}, kPatience);
 }
 
 std::string in_world(const EvaluationPlace& place) {
@@ -39,18 +36,19 @@ std::string in_world(const EvaluationPlace& place) {
 
 std::vector<Clip> collisions(const EvaluationPlace& place, const DriveOptions& options) {
   std::vector<Clip> clips;
-  for (const EvaluationResult& result : read_evaluations(place.directory.evaluation())) {
+  for (const EvaluationRecord& result : read_evaluations(place.directory.evaluation())) {
     if (result.planner != options.planner || result.seed != options.seed.value_or(result.seed))
       continue;
     for (std::size_t i = 0; i < result.per_episode.size(); ++i) {
       if (result.per_episode[i].collisions == 0) continue;
       if (static_cast<int>(clips.size()) == options.most) return clips;
-      const std::string name = fmt::format("{}_{}_{}", result.planner, result.seed, i);
+      const std::string name =
+          EpisodeName{result.planner, result.seed, result.per_episode[i].episode}.text();
       const EpisodeTrace trace = recorded(place, find_episode(place.directory, name));
       const double end_s = trace.step_s * static_cast<double>(trace.steps.size() - 1);
-      clips.push_back(clip_of(trace,
-                              fmt::format("{}{}: {}", name, in_world(place), trace.collision->kind),
-                              end_s - kBeforeCollision_s, end_s));
+      clips.push_back(clip_of(
+          trace, fmt::format("{}{}: {}", name, in_world(place), name_of(trace.collision->kind)),
+          end_s - kBeforeCollision_s, end_s));
     }
   }
   if (clips.empty()) {
@@ -83,10 +81,10 @@ int drive(const DriveOptions& options) {
     const std::uint64_t seed = options.seed.value_or(place.config.evaluation.seeds.front());
     const auto steps = static_cast<std::int64_t>(
         std::ceil((options.from_s + options.seconds) / place.config.simulation.step_s));
-    name = fmt::format("{}_{}_{}", options.planner, seed, options.number);
-    const EpisodeTrace trace =
-        traced(place, {"--drive", options.planner, "--seed", std::to_string(seed), "--of-seed",
-                       std::to_string(options.number), "--steps", std::to_string(steps)});
+    name = EpisodeName{options.planner, seed, options.number}.text();
+    const EpisodeTrace trace = traced_by_actor(
+        place.directory,
+        DriveTask{options.planner, seed, options.number, steps, place.trained.root()}, kPatience);
     clips.push_back(
         clip_of(trace, name + in_world(place), options.from_s, options.from_s + options.seconds));
   }

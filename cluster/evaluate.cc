@@ -8,13 +8,13 @@
 
 #include "cluster/launch/local.h"
 #include "cluster/launch/plan.h"
-#include "cluster/results/evaluation_result.h"
 #include "cluster/results/results_tables.h"
 #include "cluster/watch/line_tail.h"
 #include "cluster/watch/step_progress.h"
 #include "proto/base/failure.h"
 #include "proto/base/json.h"
 #include "proto/base/text.h"
+#include "proto/run/evaluation_record.h"
 #include "proto/settings/planner_pairs.h"
 #include "proto/system/clock.h"
 #include "proto/system/files.h"
@@ -89,10 +89,10 @@ int evaluate(const EvaluateOptions& options) {
     return 128 + ending.signal;
   }
 
-  std::vector<EvaluationResult> results;
+  std::vector<EvaluationRecord> results;
   std::vector<SeedResult> of_this_run;
   for (const EvaluationJob& job : jobs) {
-    results.push_back(read_evaluation(evaluation_file(job, directory)));
+    results.push_back(read_evaluation(directory.evaluation(job.name())));
     of_this_run.push_back({config.run.seed, results.back()});
   }
   fmt::print("\n{}: {} steps for each planner and seed\n", directory.root().string(),
@@ -102,7 +102,9 @@ int evaluate(const EvaluateOptions& options) {
   }
   fmt::print("\n{}", text_of(paper_table()));
   if (!options.json.empty()) {
-    write_file(options.json, evaluation_json(results).dump(2) + "\n");
+    OrderedJson json = OrderedJson::array();
+    for (const EvaluationRecord& result : results) json.push_back(totals_json(result));
+    write_file(options.json, json.dump(2) + "\n");
   }
   fmt::print("\nepisodes in {}; drive one again with corridor redrive\n",
              directory.episodes().string());
@@ -111,12 +113,16 @@ int evaluate(const EvaluateOptions& options) {
 
 void redrive(const std::filesystem::path& run, const std::string& episode) {
   const RunDirectory directory = RunDirectory::open(run);
-  std::string program = program_directory() / "corridor-actor";
-  std::string root = directory.root(), file = find_episode(directory, episode);
-  std::string flag = "--redrive";
-  char* const argv[] = {program.data(), root.data(), flag.data(), file.data(), nullptr};
-  execv(program.c_str(), argv);
-  throw Failure("cannot start {}: {}; is the build complete?", program, std::strerror(errno));
+  const std::filesystem::path program = program_directory() / kActorProgram;
+  std::vector<std::string> texts =
+      argv_of(RedriveTask{find_episode(directory, episode)}, directory);
+  texts.insert(texts.begin(), program.string());
+  std::vector<char*> argv;
+  for (std::string& text : texts) argv.push_back(text.data());
+  argv.push_back(nullptr);
+  execv(program.c_str(), argv.data());
+  throw Failure("cannot start {}: {}; is the build complete?", program.string(),
+                std::strerror(errno));
 }
 
 }  // namespace corridor::cluster

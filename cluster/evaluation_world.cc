@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <optional>
 
-#include "cluster/launch/manifest.h"
 #include "cluster/new_run.h"
 #include "proto/base/failure.h"
 #include "proto/config/config_values.h"
 #include "proto/config/run_config.h"
 #include "proto/run/fingerprint.h"
+#include "proto/run/manifest.h"
 #include "proto/settings/planner_pairs.h"
 #include "proto/settings/schedule.h"
 #include "proto/system/files.h"
@@ -51,7 +51,7 @@ RunDirectory world_directory(const RunDirectory& run, const RunConfig& config,
   on_disk("remove", root, [&] { std::filesystem::remove_all(root); });
   on_disk("create", root, [&] { std::filesystem::create_directories(root.parent_path()); });
   NewRun made(root);
-  made.fill(config, to_toml(config), read_file(run.manifest()));
+  made.fill(config, to_toml(config), read_manifest(run));
   made.keep();
   return made.directory();
 }
@@ -72,7 +72,8 @@ EvaluationPlace evaluation_place(const std::filesystem::path& run, const Evaluat
   const RunDirectory trained = RunDirectory::open(run);
   EvaluationPlace place{trained, trained, load_run_config(trained.config())};
   if (!world.is_own()) {
-    const std::string name = world.name(world.scenario.empty() ? scenario_name(trained) : "");
+    const std::string name =
+        world.name(world.scenario.empty() ? read_manifest(trained).scenario_name() : "");
     const int lanes = place.config.road.lanes;
     place.config = config_in(place.config, world, name);
     if (place.config.road.lanes != lanes) {
@@ -117,8 +118,9 @@ void check_can_drive(const std::string& planner, const EvaluationPlace& place) {
 
 std::filesystem::path find_episode(const RunDirectory& directory, const std::string& episode) {
   if (std::filesystem::is_regular_file(episode)) return episode;
-  const std::filesystem::path file = directory.episodes() / (episode + ".json");
-  if (std::filesystem::is_regular_file(file)) return file;
+  if (const auto name = parse_episode_name(episode)) {
+    if (auto file = directory.episode(*name); std::filesystem::is_regular_file(file)) return file;
+  }
   throw Failure("there is no episode '{}': give a file, or a name as in {}", episode,
                 directory.episodes().string());
 }

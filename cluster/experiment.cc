@@ -8,7 +8,6 @@
 #include "cluster/launch/local.h"
 #include "cluster/launch/manifest.h"
 #include "cluster/launch/plan.h"
-#include "cluster/results/evaluation_result.h"
 #include "cluster/results/results_tables.h"
 #include "cluster/watch/line_tail.h"
 #include "cluster/watch/step_progress.h"
@@ -17,6 +16,7 @@
 #include "proto/base/text.h"
 #include "proto/config/config_values.h"
 #include "proto/config/run_config.h"
+#include "proto/run/evaluation_record.h"
 #include "proto/run/fingerprint.h"
 #include "proto/run/metrics.h"
 #include "proto/run/run_directory.h"
@@ -39,7 +39,7 @@ struct Evaluation {
   RunDirectory place;  // of that scenario
   EvaluationJob job;
 
-  fs::path file() const { return evaluation_file(job, place); }
+  fs::path file() const { return place.evaluation(job.name()); }
 };
 
 // Of runs that have been trained.
@@ -195,7 +195,7 @@ void write_results(const Experiment& experiment, const std::vector<TrainingRun>&
       for (const SeedResult& result : results) {
         OrderedJson entry = {
             {"training", training.name}, {"training_seed", result.training_seed}, {"world", world}};
-        entry.update(evaluation_json({result.result}).front());
+        entry.update(totals_json(result.result));
         json.push_back(std::move(entry));
       }
     }

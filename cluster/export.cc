@@ -1,9 +1,9 @@
 #include "cluster/export.h"
 
 #include "proto/base/failure.h"
-#include "proto/base/json.h"
 #include "proto/config/run_config.h"
 #include "proto/run/fingerprint.h"
+#include "proto/run/manifest.h"
 #include "proto/run/networks.h"
 #include "proto/run/run_directory.h"
 #include "proto/settings/schedule.h"
@@ -21,14 +21,13 @@ void export_run(const std::filesystem::path& run, const std::filesystem::path& t
   }
   const auto networks = newest_networks(trained, config);
   CORRIDOR_CHECK(networks.has_value(), "{}", run.string());
-  OrderedJson manifest = OrderedJson::parse(read_file(trained.manifest()), nullptr, false);
-  if (!manifest.is_object()) throw Failure("{} is no JSON object", trained.manifest().string());
-  manifest["fingerprint"] = fingerprint(*checkpoint);
+  RunManifest manifest = read_manifest(trained);
+  manifest.fingerprint = fingerprint(*checkpoint);
 
   const RunDirectory exported = RunDirectory::create(to);
   write_networks(exported, *networks);
   write_file(exported.config(), read_file(trained.config()));
-  write_file(exported.manifest(), manifest.dump(2) + "\n");
+  write_manifest(exported, manifest);
 }
 
 }  // namespace corridor::cluster

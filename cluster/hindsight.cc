@@ -3,21 +3,19 @@
 #include "cluster/evaluate.h"
 #include "cluster/launch/local.h"
 #include "cluster/launch/plan.h"
-#include "cluster/results/evaluation_result.h"
-#include "cluster/results/hindsight_result.h"
+#include "cluster/results/hindsight_table.h"
 #include "cluster/watch/line_tail.h"
 #include "cluster/watch/step_progress.h"
 #include "proto/base/failure.h"
-#include "proto/base/json.h"
 #include "proto/config/run_config.h"
+#include "proto/run/evaluation_record.h"
 #include "proto/system/clock.h"
-#include "proto/system/files.h"
 
 namespace corridor::cluster {
 namespace {
 
-EvaluationResult evaluated(const EvaluationJob& job, const RunDirectory& directory) {
-  const std::filesystem::path file = evaluation_file(job, directory);
+EvaluationRecord evaluated(const EvaluationJob& job, const RunDirectory& directory) {
+  const std::filesystem::path file = directory.evaluation(job.name());
   if (!std::filesystem::exists(file)) {
     throw Failure("{} has not been evaluated with {} on seed {}: corridor evaluate does that",
                   directory.root().string(), job.planner, job.seed);
@@ -34,13 +32,12 @@ int hindsight(const HindsightOptions& options) {
       chosen_jobs(options.planners, options.seeds, config.evaluation.steps, config);
   const int parallel = parallel_jobs(options.jobs);
 
-  const HindsightLimits limits{options.actions, options.attempts};
-  std::vector<EvaluationResult> evaluations;
+  std::vector<EvaluationRecord> evaluations;
   std::vector<ProcessPlan> plan;
   std::vector<StepTask> tasks;
   for (const EvaluationJob& job : jobs) {
     evaluations.push_back(evaluated(job, directory));
-    plan.push_back(hindsight_process(job, limits, directory, program_directory()));
+    plan.push_back(hindsight_process(job, options.limits, directory, program_directory()));
     tasks.push_back({fmt::format("{} {}", job.planner, job.seed), evaluations.back().collisions, 0,
                      plan.back().log, parse_step_count});
   }
@@ -51,14 +48,14 @@ int hindsight(const HindsightOptions& options) {
     return 128 + ending.signal;
   }
 
-  std::vector<HindsightResult> results;
+  std::vector<HindsightRecord> results;
   for (std::size_t i = 0; i < jobs.size(); ++i) {
-    const std::filesystem::path file = hindsight_file(jobs[i], directory);
-    results.push_back(parse_hindsight(read_json(file), file.string()));
+    const std::filesystem::path file = directory.hindsight(jobs[i].name());
+    results.push_back(read_hindsight(file));
     if (results.back().steps != evaluations[i].steps ||
-        results.back().collisions != evaluations[i].collisions) {
+        std::ssize(results.back().collisions) != evaluations[i].collisions) {
       throw Failure("{} is not about what {} says now: has it been evaluated meanwhile? Try again",
-                    file.string(), evaluation_file(jobs[i], directory).string());
+                    file.string(), directory.evaluation(jobs[i].name()).string());
     }
   }
   fmt::print("\n{}\n\n{}", directory.root().string(), text_of(hindsight_table(results)));

@@ -7,14 +7,15 @@
 #include <string>
 #include <vector>
 
+#include "proto/run/hindsight_record.h"
+
 namespace corridor::cluster {
 
 struct HindsightOptions {
   std::filesystem::path run = {};          // or one of its scenarios/<name>
   std::vector<std::string> planners = {};  // empty: those evaluated by default
   std::vector<std::uint64_t> seeds = {};   // empty: [evaluation] seeds
-  int actions = 4;                         // search the last so many
-  std::int64_t attempts = 1000;            // give up a search after so many
+  HindsightLimits limits = {};             // of a search
   std::optional<int> jobs = {};            // processes at a time; else the number of cores
 };
 

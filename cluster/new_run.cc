@@ -11,11 +11,11 @@ NewRun::~NewRun() {
 }
 
 void NewRun::fill(const RunConfig& config, const std::string& config_toml,
-                  const std::string& manifest) const {
+                  const RunManifest& manifest) const {
   scenarios::write_sumo_files(config, directory_.network().parent_path());
   for (const auto& file : {directory_.network(), directory_.routes()}) sync_file(file);
   write_file(directory_.config(), config_toml);
-  write_file(directory_.manifest(), manifest);
+  write_manifest(directory_, manifest);
 }
 
 }  // namespace corridor::cluster

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <string>
 
+#include "proto/run/manifest.h"
 #include "proto/run/run_directory.h"
 #include "proto/settings/settings.h"
 
@@ -22,7 +23,7 @@ class NewRun {
   // What processes read: SUMO's files, config.toml, and last, since with it the directory is a run,
   // manifest.json. All of it survives a power failure.
   void fill(const RunConfig& config, const std::string& config_toml,
-            const std::string& manifest) const;
+            const RunManifest& manifest) const;
   void keep() { kept_ = true; }
 
  private:

@@ -143,8 +143,7 @@ int train(const TrainOptions& options, const std::string& program) {
   const RunLock lock(directory);
   if (given) write_networks(directory, *given);
   const std::string text = to_toml(config);
-  const OrderedJson manifest = describe_run(draw_run_id(), config.run.seed, options.scenario, text);
-  run.fill(config, text, manifest.dump(2) + "\n");
+  run.fill(config, text, describe_run(draw_run_id(), config.run.seed, options.scenario, text));
   if (stop_requested()) return 128 + SIGINT;
   run.keep();
 
@@ -155,7 +154,7 @@ int train(const TrainOptions& options, const std::string& program) {
 
 int resume(const ResumeOptions& options, const std::string& program) {
   const RunDirectory directory = RunDirectory::open(options.run);
-  if (read_json(directory.manifest()).contains("fingerprint")) {
+  if (read_manifest(directory).fingerprint) {
     throw Failure("{} is an exported run: train one with --from {} instead", options.run.string(),
                   options.run.string());
   }

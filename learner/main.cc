@@ -8,6 +8,7 @@
 #include "learner/training.h"
 #include "proto/base/json.h"
 #include "proto/config/run_config.h"
+#include "proto/run/manifest.h"
 #include "proto/run/metrics.h"
 #include "proto/run/run_directory.h"
 #include "proto/system/command_line.h"

@@ -3,6 +3,7 @@
 
 #include "proto/config/run_config.h"
 #include "proto/run/checkpoints.h"
+#include "proto/run/manifest.h"
 #include "proto/run/metrics.h"
 #include "proto/run/run_directory.h"
 #include "proto/system/command_line.h"

@@ -8,11 +8,9 @@
 #include <span>
 #include <thread>
 
-#include "proto/base/failure.h"
-#include "proto/base/json.h"
+#include "proto/base/format.h"
 #include "proto/config/run_config.h"
 #include "proto/run/run_directory.h"
-#include "proto/system/files.h"
 #include "proto/system/identity.h"
 #include "proto/system/program.h"
 
@@ -66,42 +64,24 @@ std::string draw_run_id() {
   return fmt::format("{:016x}{:016x}", random_64_bits(), random_64_bits());
 }
 
-OrderedJson describe_run(const std::string& run_id, std::uint64_t seed,
+RunManifest describe_run(const std::string& run_id, std::uint64_t seed,
                          const std::filesystem::path& scenario, const std::string& config_toml) {
-  return {{"run_id", run_id},
-          {"seed", seed},
-          {"scenario", std::filesystem::absolute(scenario).string()},
-          {"started", utc_now()},
-          {"host", host_name()},
-          {"cpu", cpu_model()},
-          {"cores", std::thread::hardware_concurrency()},
-          {"versions",
-           {{"corridor", kVersion},
-            {"git_commit", CORRIDOR_GIT_COMMIT},
-            {"sumo", sumo_version()},
-            {"libtorch", CORRIDOR_TORCH_VERSION},
-            {"blas", blas_library()},
-            {"compiler", CORRIDOR_COMPILER}}},
-          {"config", config_toml}};
+  RunManifest manifest;
+  manifest.run_id = run_id;
+  manifest.seed = seed;
+  manifest.scenario = std::filesystem::absolute(scenario).string();
+  manifest.started = utc_now();
+  manifest.host = host_name();
+  manifest.cpu = cpu_model();
+  manifest.cores = std::thread::hardware_concurrency();
+  manifest.versions = {kVersion,       CORRIDOR_GIT_COMMIT, sumo_version(), CORRIDOR_TORCH_VERSION,
+                       blas_library(), CORRIDOR_COMPILER};
+  manifest.config = config_toml;
+  return manifest;
 }
 
 RunConfig config_at_start(const RunDirectory& directory) {
-  const std::string file = directory.manifest().string();
-  const Json manifest = read_json(file);
-  if (!manifest.is_object() || !manifest.contains("config") || !manifest["config"].is_string()) {
-    throw Failure("{} is damaged: it does not say with which settings the run began", file);
-  }
-  return parse_run_config(manifest["config"].get<std::string>(), file);
-}
-
-std::string scenario_name(const RunDirectory& directory) {
-  const std::string file = directory.manifest().string();
-  const auto manifest = Json::parse(read_file(file), nullptr, false);
-  if (!manifest.is_object() || !manifest.contains("scenario") ||
-      !manifest["scenario"].is_string()) {
-    throw Failure("{} is damaged: it does not say of which scenario the run is", file);
-  }
-  return std::filesystem::path(manifest["scenario"].get<std::string>()).stem();
+  return parse_run_config(read_manifest(directory).config, directory.manifest().string());
 }
 
 }  // namespace corridor::cluster

@@ -3,19 +3,27 @@
 #include "proto/base/format.h"
 
 namespace corridor::cluster {
+namespace {
+
+ProcessPlan actor_process(const std::string& name, const ActorTask& task,
+                          const RunDirectory& directory, const std::filesystem::path& programs) {
+  std::vector<std::string> argv = argv_of(task, directory);
+  argv.insert(argv.begin(), (programs / kActorProgram).string());
+  return {name, std::move(argv), directory.log(name)};
+}
+
+}  // namespace
 
 std::vector<ProcessPlan> training_plan(const RunSettings& settings, const RunDirectory& directory,
                                        const std::filesystem::path& programs) {
-  const std::string run = directory.root().string();
-  const auto process = [&](const std::string& name, const char* program,
-                           std::vector<std::string> arguments) {
-    arguments.insert(arguments.begin(), {(programs / program).string(), run});
-    return ProcessPlan{name, std::move(arguments), directory.log(name)};
+  const auto server = [&](const char* name, const char* program) {
+    return ProcessPlan{
+        name, {(programs / program).string(), directory.root().string()}, directory.log(name)};
   };
-  std::vector<ProcessPlan> plan = {process(kReplayName, "corridor-replay", {}),
-                                   process(kLearnerName, "corridor-learner", {})};
+  std::vector<ProcessPlan> plan = {server(kReplayName, "corridor-replay"),
+                                   server(kLearnerName, "corridor-learner")};
   for (int i = 0; i < settings.actors; ++i) {
-    plan.push_back(process(actor_name(i), "corridor-actor", {"--index", std::to_string(i)}));
+    plan.push_back(actor_process(actor_name(i), TrainTask{i}, directory, programs));
     // The replay server knows where it stood.
     plan.back().replaceable = true;
     plan.back().ends_by_itself = true;
@@ -36,36 +44,18 @@ std::vector<EvaluationJob> evaluation_jobs(const std::vector<std::string>& plann
 ProcessPlan evaluation_process(const EvaluationJob& job, const RunDirectory& directory,
                                const RunDirectory& trained, const std::filesystem::path& programs,
                                const std::filesystem::path& fcd) {
-  const std::string name = fmt::format("evaluate-{}-{}", job.planner, job.seed);
-  ProcessPlan plan{
-      name,
-      {(programs / "corridor-actor").string(), directory.root().string(), "--evaluate", job.planner,
-       "--seed", std::to_string(job.seed), "--steps", std::to_string(job.steps)},
-      directory.log(name)};
-  if (trained.root() != directory.root()) {
-    plan.argv.insert(plan.argv.end(), {"--networks", trained.root().string()});
-  }
-  if (!fcd.empty()) plan.argv.insert(plan.argv.end(), {"--fcd", fcd.string()});
-  return plan;
-}
-
-std::filesystem::path evaluation_file(const EvaluationJob& job, const RunDirectory& directory) {
-  return directory.evaluation() / fmt::format("{}_{}.json", job.planner, job.seed);
+  EvaluateTask task{job.planner, job.seed, job.steps};
+  if (trained.root() != directory.root()) task.networks = trained.root();
+  if (!fcd.empty()) task.fcd = fcd;
+  return actor_process(fmt::format("evaluate-{}-{}", job.planner, job.seed), task, directory,
+                       programs);
 }
 
 ProcessPlan hindsight_process(const EvaluationJob& job, const HindsightLimits& limits,
                               const RunDirectory& directory,
                               const std::filesystem::path& programs) {
-  const std::string name = fmt::format("hindsight-{}-{}", job.planner, job.seed);
-  return {name,
-          {(programs / "corridor-actor").string(), directory.root().string(), "--look-back",
-           job.planner, "--seed", std::to_string(job.seed), "--actions",
-           std::to_string(limits.actions), "--attempts", std::to_string(limits.attempts)},
-          directory.log(name)};
-}
-
-std::filesystem::path hindsight_file(const EvaluationJob& job, const RunDirectory& directory) {
-  return directory.hindsight() / fmt::format("{}_{}.json", job.planner, job.seed);
+  return actor_process(fmt::format("hindsight-{}-{}", job.planner, job.seed),
+                       LookBackTask{job.planner, job.seed, limits}, directory, programs);
 }
 
 }  // namespace corridor::cluster

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "proto/run/actor_task.h"
 #include "proto/run/run_directory.h"
 #include "proto/settings/settings.h"
 
@@ -30,6 +31,8 @@ struct EvaluationJob {
   std::string planner;
   std::uint64_t seed = 0;
   std::int64_t steps = 0;
+
+  EvaluationName name() const { return {planner, seed}; }
   bool operator==(const EvaluationJob&) const = default;
 };
 
@@ -42,18 +45,7 @@ std::vector<EvaluationJob> evaluation_jobs(const std::vector<std::string>& plann
 ProcessPlan evaluation_process(const EvaluationJob& job, const RunDirectory& directory,
                                const RunDirectory& trained, const std::filesystem::path& programs,
                                const std::filesystem::path& fcd);
-// What that process writes.
-std::filesystem::path evaluation_file(const EvaluationJob& job, const RunDirectory& directory);
-
-// How far a look back goes: by the last so many actions, with so many attempts for each number.
-struct HindsightLimits {
-  int actions = 0;
-  std::int64_t attempts = 0;
-};
 // Looks back on the collisions of what an evaluation in `directory` wrote.
 ProcessPlan hindsight_process(const EvaluationJob& job, const HindsightLimits& limits,
                               const RunDirectory& directory, const std::filesystem::path& programs);
-// What that process writes.
-std::filesystem::path hindsight_file(const EvaluationJob& job, const RunDirectory& directory);
-
 }  // namespace corridor::cluster

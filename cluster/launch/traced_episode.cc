@@ -2,21 +2,21 @@
 
 #include "cluster/launch/local.h"
 #include "proto/base/failure.h"
+#include "proto/base/text.h"
 #include "proto/system/subprocess.h"
 
 namespace corridor::cluster {
 
-EpisodeTrace traced_by_actor(const RunDirectory& directory,
-                             const std::vector<std::string>& arguments,
+EpisodeTrace traced_by_actor(const RunDirectory& directory, const ActorTask& task,
                              std::chrono::minutes patience) {
-  std::vector<std::string> all = {directory.root().string()};
-  all.insert(all.end(), arguments.begin(), arguments.end());
-  const auto driven = run_subprocess(program_directory() / "corridor-actor", all, "", patience);
-  if (!driven) throw Failure("{} was not driven within {} min", arguments.at(1), patience.count());
+  const std::vector<std::string> argv = argv_of(task, directory);
+  const auto driven = run_subprocess(program_directory() / kActorProgram, argv, "", patience);
+  const std::string command = fmt::format("{} {}", kActorProgram, listed(argv, " "));
+  if (!driven) throw Failure("{} has not ended within {} min", command, patience.count());
   if (driven->status != 0) {
     throw Failure("{}", driven->errors.substr(0, driven->errors.find('\n')));
   }
-  return parse_episode_trace(Json::parse(driven->output, nullptr, false), arguments.at(1));
+  return parse_episode_trace(Json::parse(driven->output, nullptr, false), command);
 }
 
 }  // namespace corridor::cluster

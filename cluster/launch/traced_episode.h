@@ -2,18 +2,15 @@
 #pragma once
 
 #include <chrono>
-#include <string>
-#include <vector>
 
+#include "proto/run/actor_task.h"
 #include "proto/run/episode_trace.h"
 #include "proto/run/run_directory.h"
 
 namespace corridor::cluster {
 
-// `arguments` follow the run directory, --trace FILE or --drive PAIR first. Throws Failure when
-// that takes longer or fails.
-EpisodeTrace traced_by_actor(const RunDirectory& directory,
-                             const std::vector<std::string>& arguments,
+// `task`: a TraceTask or a DriveTask. Throws Failure when that takes longer or fails.
+EpisodeTrace traced_by_actor(const RunDirectory& directory, const ActorTask& task,
                              std::chrono::minutes patience);
 
 }  // namespace corridor::cluster

@@ -144,7 +144,7 @@ std::string caption_of(const EpisodeFigure& figure) {
   }
   if (figure.failed) {
     const EpisodeTrace& trace = figure.failed->trace;
-    std::string kind = trace.collision ? trace.collision->kind : "";
+    std::string kind = trace.collision ? name_of(trace.collision->kind) : "";
     std::ranges::replace(kind, '_', ' ');
     text += fmt::format(
         " Before a collision, the first with its seed ({}, {}): dark blue is the ego, red the "

@@ -16,7 +16,7 @@ namespace {
 // Where a run was evaluated in traffic as in its training.
 struct Evaluated {
   RunDirectory directory;
-  std::vector<EvaluationResult> results;
+  std::vector<EvaluationRecord> results;
 };
 
 std::optional<Evaluated> evaluated_as_trained(const std::vector<RunGroup>& groups) {
@@ -31,25 +31,22 @@ std::optional<Evaluated> evaluated_as_trained(const std::vector<RunGroup>& group
   return std::nullopt;
 }
 
-EpisodeTrace drive_again(const RunDirectory& directory, const std::string& name) {
-  const std::filesystem::path file = directory.episodes() / (name + ".json");
-  return traced_by_actor(directory, {"--trace", file.string()}, std::chrono::minutes(1));
+EpisodeTrace drive_again(const RunDirectory& directory, const EpisodeName& name) {
+  return traced_by_actor(directory, TraceTask{directory.episode(name)}, std::chrono::minutes(1));
 }
 
 }  // namespace
 
-std::string ChosenEpisode::name() const { return fmt::format("{}_{}_{}", planner, seed, index); }
-
-std::optional<ChosenEpisode> typical_episode(const std::vector<EvaluationResult>& of_planner) {
+std::optional<EpisodeName> typical_episode(const std::vector<EvaluationRecord>& of_planner) {
   std::int64_t longest = 0;
-  for (const EvaluationResult& result : of_planner) {
-    for (const EpisodeResult& episode : result.per_episode)
+  for (const EvaluationRecord& result : of_planner) {
+    for (const EpisodeRecord& episode : result.per_episode)
       longest = std::max(longest, episode.steps);
   }
   std::vector<std::tuple<double, std::uint64_t, std::size_t>> whole;
-  for (const EvaluationResult& result : of_planner) {
+  for (const EvaluationRecord& result : of_planner) {
     for (std::size_t i = 0; i < result.per_episode.size(); ++i) {
-      const EpisodeResult& episode = result.per_episode[i];
+      const EpisodeRecord& episode = result.per_episode[i];
       if (episode.collisions == 0 && episode.steps == longest)
         whole.emplace_back(episode.bp_reward, result.seed, i);
     }
@@ -57,15 +54,15 @@ std::optional<ChosenEpisode> typical_episode(const std::vector<EvaluationResult>
   if (whole.empty()) return std::nullopt;
   std::ranges::sort(whole);
   const auto& [reward, seed, index] = whole[whole.size() / 2];
-  return ChosenEpisode{of_planner.front().planner, seed, index};
+  return EpisodeName{of_planner.front().planner, seed, index};
 }
 
-std::optional<ChosenEpisode> failed_episode(const std::vector<EvaluationResult>& of_planner) {
-  for (const EvaluationResult& result : of_planner) {
+std::optional<EpisodeName> failed_episode(const std::vector<EvaluationRecord>& of_planner) {
+  for (const EvaluationRecord& result : of_planner) {
     for (std::size_t i = 0; i < result.per_episode.size(); ++i) {
-      const EpisodeResult& episode = result.per_episode[i];
+      const EpisodeRecord& episode = result.per_episode[i];
       if (episode.collisions > 0 && episode.steps >= static_cast<std::int64_t>(kShownInstants))
-        return ChosenEpisode{result.planner, result.seed, i};
+        return EpisodeName{result.planner, result.seed, i};
     }
   }
   return std::nullopt;
@@ -75,19 +72,19 @@ ReportedEpisodes report_episodes(const std::vector<RunGroup>& groups) {
   ReportedEpisodes reported;
   const std::optional<Evaluated> evaluated = evaluated_as_trained(groups);
   if (!evaluated) return reported;
-  const auto driven = [&](const std::optional<ChosenEpisode>& chosen) {
+  const auto driven = [&](const std::optional<EpisodeName>& chosen) {
     std::optional<DrivenEpisode> episode;
     if (!chosen) return episode;
     try {
-      episode = {chosen->name(), drive_again(evaluated->directory, chosen->name())};
+      episode = {chosen->text(), drive_again(evaluated->directory, *chosen)};
     } catch (const Failure& failure) {
-      reported.notes.push_back(fmt::format("no picture of {}: {}", chosen->name(), failure.what()));
+      reported.notes.push_back(fmt::format("no picture of {}: {}", chosen->text(), failure.what()));
     }
     return episode;
   };
   for (const PlannerPair& pair : kPlannerPairs) {
-    std::vector<EvaluationResult> of_planner;
-    for (const EvaluationResult& result : evaluated->results) {
+    std::vector<EvaluationRecord> of_planner;
+    for (const EvaluationRecord& result : evaluated->results) {
       if (result.planner == pair.name) of_planner.push_back(result);
     }
     if (of_planner.empty()) continue;

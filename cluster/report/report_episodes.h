@@ -10,19 +10,10 @@
 
 namespace corridor::cluster {
 
-// An episode of an evaluation, and where it stands among those of its seed.
-struct ChosenEpisode {
-  std::string planner;
-  std::uint64_t seed = 0;
-  std::size_t index = 0;
-  bool operator==(const ChosenEpisode&) const = default;
-  std::string name() const;  // as in evaluation/episodes: "hierarchical_1002_3"
-};
-
 // The median in BP reward among a planner's episodes without collision, the cut off ones at the end
 // of a seed excepted. The first in which the planner collided, not at once. Pure.
-std::optional<ChosenEpisode> typical_episode(const std::vector<EvaluationResult>& of_planner);
-std::optional<ChosenEpisode> failed_episode(const std::vector<EvaluationResult>& of_planner);
+std::optional<EpisodeName> typical_episode(const std::vector<EvaluationRecord>& of_planner);
+std::optional<EpisodeName> failed_episode(const std::vector<EvaluationRecord>& of_planner);
 
 struct ReportedEpisodes {
   std::vector<EpisodeFigure> figures;  // one for each evaluated planner, in the order of a table

@@ -76,7 +76,7 @@ std::string tables_of(const RunGroup& group, const std::string& world) {
   for (const RunRecord& run : group.runs) {
     const auto in_world = run.evaluations.find(world);
     if (in_world == run.evaluations.end()) continue;
-    for (const EvaluationResult& result : in_world->second) {
+    for (const EvaluationRecord& result : in_world->second) {
       results.push_back({run.config.run.seed, result});
     }
   }
@@ -99,10 +99,10 @@ std::string shell_word(const std::string& text) {
 }
 
 // One command for all planners of equal steps and seeds.
-std::string evaluate_commands(const std::vector<EvaluationResult>& results, const std::string& run,
+std::string evaluate_commands(const std::vector<EvaluationRecord>& results, const std::string& run,
                               const std::string& scenario) {
   std::map<std::string, std::map<std::int64_t, std::vector<std::uint64_t>>> seeds;
-  for (const EvaluationResult& result : results) {
+  for (const EvaluationRecord& result : results) {
     seeds[result.planner][result.steps].push_back(result.seed);
   }
   std::map<std::pair<std::int64_t, std::vector<std::uint64_t>>, std::vector<std::string>> planners;

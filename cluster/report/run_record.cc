@@ -2,13 +2,13 @@
 
 #include <algorithm>
 
-#include "cluster/launch/manifest.h"
 #include "cluster/launch/plan.h"
 #include "proto/base/failure.h"
 #include "proto/base/json.h"
 #include "proto/config/config_values.h"
 #include "proto/config/run_config.h"
 #include "proto/run/fingerprint.h"
+#include "proto/run/manifest.h"
 #include "proto/run/run_directory.h"
 #include "proto/system/files.h"
 
@@ -59,8 +59,9 @@ RunRecord read_run(const std::filesystem::path& root) {
   RunRecord run;
   run.root = root;
   run.config = load_run_config(directory.config());
-  run.scenario = scenario_name(directory);
-  run.made_with = made_with(OrderedJson::parse(read_file(directory.manifest())));
+  const RunManifest manifest = read_manifest(directory);
+  run.scenario = manifest.scenario_name();
+  run.made_with = made_with(to_json(manifest));
 
   for (int i = 0; i < run.config.run.actors; ++i) {
     run.actors.push_back(read_metrics(directory, actor_name(i)));

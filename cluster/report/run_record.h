@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "cluster/results/evaluation_result.h"
 #include "cluster/results/training_curves.h"
+#include "proto/run/evaluation_record.h"
 #include "proto/settings/settings.h"
 
 namespace corridor::cluster {
@@ -27,7 +27,7 @@ struct RunRecord {
   std::vector<ProcessMetrics> actors;
   std::vector<ProcessMetrics> learner;  // one file
   // By the world that was driven in: its own has the name "", others that of their scenario.
-  std::map<std::string, std::vector<EvaluationResult>> evaluations;
+  std::map<std::string, std::vector<EvaluationRecord>> evaluations;
   // Those of these worlds that are as in training: "", and scenarios with the same settings.
   std::set<std::string> worlds_of_training;
 

@@ -72,7 +72,7 @@ PlottedCurve plotted(const RunGroup& group, Processes processes, Phase phase,
 }
 
 std::optional<Level> rules_level(const RunGroup& group, Phase phase) {
-  std::vector<EvaluationResult> results;
+  std::vector<EvaluationRecord> results;
   for (const RunRecord& run : group.runs) {
     for (const std::string& world : run.worlds_of_training) {
       const auto& in_world = run.evaluations.at(world);

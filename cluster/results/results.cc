@@ -18,31 +18,31 @@ constexpr double kPer = 1000.0;  // steps
 // A quantity that is a sum over episodes over the sum of what it is counted by.
 struct Mean {
   Quantity quantity;
-  double (*numerator)(const EpisodeResult&);
-  double (*denominator)(const EpisodeResult&, double step_s);
+  double (*numerator)(const EpisodeRecord&);
+  double (*denominator)(const EpisodeRecord&, double step_s);
 };
 
-double thousands_of_steps(const EpisodeResult& episode, double) {
+double thousands_of_steps(const EpisodeRecord& episode, double) {
   return static_cast<double>(episode.steps) / kPer;
 }
-double kilometres(const EpisodeResult& episode) { return episode.distance_m / 1000.0; }
-double kilometres_driven(const EpisodeResult& episode, double) { return kilometres(episode); }
-double lane_changes(const EpisodeResult& episode) {
+double kilometres(const EpisodeRecord& episode) { return episode.distance_m / 1000.0; }
+double kilometres_driven(const EpisodeRecord& episode, double) { return kilometres(episode); }
+double lane_changes(const EpisodeRecord& episode) {
   return static_cast<double>(episode.lane_changes);
 }
 
 constexpr Mean kMeans[] = {
-    {Quantity::kBpReward, [](const EpisodeResult& e) { return e.bp_reward; }, thousands_of_steps},
+    {Quantity::kBpReward, [](const EpisodeRecord& e) { return e.bp_reward; }, thousands_of_steps},
     {Quantity::kLaneChanges, lane_changes, thousands_of_steps},
     {Quantity::kSpeed, kilometres,
-     [](const EpisodeResult& e, double step_s) {
+     [](const EpisodeRecord& e, double step_s) {
        return static_cast<double>(e.steps) * step_s / 3600.0;
      }},
     {Quantity::kHardBrakes,
-     [](const EpisodeResult& e) { return static_cast<double>(e.hard_brakes); }, thousands_of_steps},
+     [](const EpisodeRecord& e) { return static_cast<double>(e.hard_brakes); }, thousands_of_steps},
     {Quantity::kLaneChangesPerKm, lane_changes, kilometres_driven},
     {Quantity::kBypassesPerKm,
-     [](const EpisodeResult& e) { return static_cast<double>(e.bypasses); }, kilometres_driven},
+     [](const EpisodeRecord& e) { return static_cast<double>(e.bypasses); }, kilometres_driven},
 };
 
 // What is drawn by the bootstrap: episodes, or training seeds.
@@ -61,7 +61,7 @@ class ArmData {
   void add(const SeedResult& added) {
     // Where nothing is learned all training seeds are one.
     const std::uint64_t training_seed = learned_ ? added.training_seed : 0;
-    const EvaluationResult*& slot = results_[training_seed][added.result.seed];
+    const EvaluationRecord*& slot = results_[training_seed][added.result.seed];
     CORRIDOR_CHECK(!learned_ || slot == nullptr, "{}, training seed {}, evaluation seed {}: twice",
                    planner_, training_seed, added.result.seed);
     if (slot == nullptr || slot->steps < added.result.steps) slot = &added.result;
@@ -93,7 +93,7 @@ class ArmData {
     constexpr std::array kKinds = {Quantity::kRearEnded, Quantity::kRearEnding,
                                    Quantity::kSideByOther, Quantity::kSideByEgo,
                                    Quantity::kOffRoad};
-    for (std::size_t kind = 0; kind < kCollisionKinds.size(); ++kind) {
+    for (std::size_t kind = 0; kind < kCollisionKinds; ++kind) {
       set(kKinds[kind], rate(arm.collisions_by_kind[kind], thousands));
     }
     for (const Mean& mean : kMeans) set(mean.quantity, estimate(mean, seed));
@@ -112,16 +112,16 @@ class ArmData {
  private:
   bool over_seeds() const { return results_.size() > 1; }
 
-  static void add_totals(const EvaluationResult& result, Arm& arm,
+  static void add_totals(const EvaluationRecord& result, Arm& arm,
                          std::vector<double>& lane_steps) {
     arm.steps += result.steps;
     arm.episodes += result.episodes;
     arm.distance_km += result.distance_km;
     arm.collisions += result.collisions;
-    for (std::size_t kind = 0; kind < kCollisionKinds.size(); ++kind) {
+    for (std::size_t kind = 0; kind < kCollisionKinds; ++kind) {
       arm.collisions_by_kind[kind] += result.collisions_by_kind[kind];
     }
-    for (const EpisodeResult& episode : result.per_episode) {
+    for (const EpisodeRecord& episode : result.per_episode) {
       lane_steps.resize(std::max(lane_steps.size(), episode.lane_steps.size()));
       for (std::size_t lane = 0; lane < episode.lane_steps.size(); ++lane) {
         lane_steps[lane] += static_cast<double>(episode.lane_steps[lane]);
@@ -138,12 +138,12 @@ class ArmData {
   }
 
   // All episodes of one training seed.
-  static Units episodes(const std::map<std::uint64_t, const EvaluationResult*>& by_seed,
+  static Units episodes(const std::map<std::uint64_t, const EvaluationRecord*>& by_seed,
                         const Mean& mean) {
     Units units;
     for (const auto& [evaluation_seed, result] : by_seed) {
-      const double step_s = result->step_s();
-      for (const EpisodeResult& episode : result->per_episode) {
+      const double step_s = result->step_s;
+      for (const EpisodeRecord& episode : result->per_episode) {
         units.numerators.push_back(mean.numerator(episode));
         units.denominators.push_back(mean.denominator(episode, step_s));
       }
@@ -179,7 +179,7 @@ class ArmData {
   std::string planner_;
   bool learned_;
   // By training seed, then evaluation seed.
-  std::map<std::uint64_t, std::map<std::uint64_t, const EvaluationResult*>> results_;
+  std::map<std::uint64_t, std::map<std::uint64_t, const EvaluationRecord*>> results_;
 };
 
 std::optional<Estimate> ratio(Quantity quantity, const Arm& arm, const ArmData& data,

@@ -26,8 +26,8 @@
 #include <string>
 #include <vector>
 
-#include "cluster/results/evaluation_result.h"
 #include "cluster/results/statistics.h"
+#include "proto/run/evaluation_record.h"
 
 namespace corridor::cluster {
 
@@ -75,7 +75,7 @@ struct Arm {
   std::int64_t episodes = 0;
   double distance_km = 0.0;
   std::int64_t collisions = 0;
-  std::array<std::int64_t, kCollisionKinds.size()> collisions_by_kind{};
+  std::array<std::int64_t, kCollisionKinds> collisions_by_kind{};
   Estimates estimates{};
   std::vector<double> lane_shares;  // of all steps, by lane, from the right
   // Nothing when the baseline is not among the results, or is this arm.
@@ -90,7 +90,7 @@ struct Arm {
 // One evaluation of the networks of one training seed, in one scenario.
 struct SeedResult {
   std::uint64_t training_seed = 0;
-  EvaluationResult result;
+  EvaluationRecord result;
 };
 
 // One scenario's arms, in the order of kPlannerPairs. Of a learned arm there is one result for each

@@ -86,13 +86,13 @@ Band band_of(const std::vector<Curve>& curves) {
   return band;
 }
 
-std::optional<Level> level_of(const std::vector<EvaluationResult>& results,
+std::optional<Level> level_of(const std::vector<EvaluationRecord>& results,
                               std::string_view planner, Phase phase, int episode_steps) {
   std::set<std::uint64_t> seeds;
   double steps = 0.0, reward = 0.0, collisions = 0.0, whole = 0.0, reward_of_whole = 0.0;
-  for (const EvaluationResult& result : results) {
+  for (const EvaluationRecord& result : results) {
     if (result.planner != planner || !seeds.insert(result.seed).second) continue;
-    for (const EpisodeResult& episode : result.per_episode) {
+    for (const EpisodeRecord& episode : result.per_episode) {
       const double of_episode = phase == Phase::kMop ? episode.mop_reward : episode.bp_reward;
       steps += static_cast<double>(episode.steps);
       reward += of_episode;

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "cluster/results/evaluation_result.h"
+#include "proto/run/evaluation_record.h"
 #include "proto/run/metrics.h"
 #include "proto/settings/named_networks.h"
 
@@ -62,7 +62,7 @@ struct Level {
 };
 // Over all results of the pair, of each evaluation seed the first. Nothing without results or
 // without whole episodes.
-std::optional<Level> level_of(const std::vector<EvaluationResult>& results,
+std::optional<Level> level_of(const std::vector<EvaluationRecord>& results,
                               std::string_view planner, Phase phase, int episode_steps);
 
 }  // namespace corridor::cluster

@@ -1,7 +1,6 @@
 #include "cluster/watch/line_tail.h"
 
 #include <algorithm>
-#include <charconv>
 #include <fstream>
 
 namespace corridor::cluster {
@@ -31,16 +30,6 @@ std::vector<std::string> LineTail::read() {
   // A chunk without an end of line is no text of ours: skipped, or it would never end.
   offset_ += start == 0 && content.size() == kChunkBytes ? content.size() : start;
   return lines;
-}
-
-std::optional<std::int64_t> parse_step_count(std::string_view text) {
-  std::int64_t steps = 0, total = 0;
-  const char* const end = text.data() + text.size();
-  const auto [slash, error] = std::from_chars(text.data(), end, steps);
-  if (error != std::errc() || slash == end || *slash != '/') return std::nullopt;
-  const auto [rest, total_error] = std::from_chars(slash + 1, end, total);
-  if (total_error != std::errc() || rest != end) return std::nullopt;
-  return steps;
 }
 
 }  // namespace corridor::cluster

@@ -25,8 +25,4 @@ class LineTail {
   std::uintmax_t offset_ = 0;
 };
 
-// The steps driven so far, of a line "steps/total" of an evaluating actor; nothing when the text is
-// no such line.
-std::optional<std::int64_t> parse_step_count(std::string_view text);
-
 }  // namespace corridor::cluster

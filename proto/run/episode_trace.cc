@@ -106,7 +106,8 @@ Json to_json(const EpisodeTrace& trace) {
                  {"lane_changes", trace.lane_changes},
                  {"steps", std::move(steps)}};
   if (trace.collision) {
-    object["collision"] = {{"kind", trace.collision->kind}, {"other", trace.collision->other}};
+    object["collision"] = {{"kind", name_of(trace.collision->kind)},
+                           {"other", trace.collision->other}};
   }
   return object;
 }
@@ -127,7 +128,7 @@ EpisodeTrace parse_episode_trace(const Json& object, const std::string& name) {
     if (trace.steps.empty()) throw Failure("no step");
     if (object.contains("collision")) {
       const Json& collision = object.at("collision");
-      trace.collision = {collision.at("kind").get<std::string>(),
+      trace.collision = {parse_choice<CollisionKind>(collision.at("kind").get<std::string>()),
                          whole_number<int>(collision.at("other"))};
     }
     return trace;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "proto/base/json.h"
+#include "proto/settings/collision_kinds.h"
 
 namespace corridor {
 
@@ -51,7 +52,7 @@ struct TracedStep {
 };
 
 struct TracedCollision {
-  std::string kind;  // "rear_ended", ...
+  CollisionKind kind = CollisionKind::kRearEnded;
   int other = 0;
 };
 

@@ -1,7 +1,6 @@
 #include "proto/run/run_directory.h"
 
 #include "proto/base/failure.h"
-#include "proto/base/json.h"
 #include "proto/system/files.h"
 
 namespace corridor {
@@ -70,19 +69,16 @@ fs::path RunDirectory::metrics(std::string_view process) const {
   return root_ / "metrics" / (std::string(process) + ".jsonl");
 }
 
-RunManifest read_manifest(const RunDirectory& directory) {
-  const Json manifest = read_json(directory.manifest());
-  constexpr std::size_t kRunIdDigits = 32;
-  std::string run_id;
-  if (manifest.is_object() && manifest.contains("run_id") && manifest["run_id"].is_string()) {
-    run_id = manifest["run_id"].get<std::string>();
-  }
-  if (run_id.size() != kRunIdDigits ||
-      run_id.find_first_not_of("0123456789abcdef") != std::string::npos) {
-    throw Failure("{} is damaged: run_id is not {} hex digits", directory.manifest().string(),
-                  kRunIdDigits);
-  }
-  return {run_id};
+fs::path RunDirectory::evaluation(const EvaluationName& name) const {
+  return evaluation() / (name.text() + ".json");
+}
+
+fs::path RunDirectory::episode(const EpisodeName& name) const {
+  return episodes() / (name.text() + ".json");
+}
+
+fs::path RunDirectory::hindsight(const EvaluationName& name) const {
+  return hindsight() / (name.text() + ".json");
 }
 
 }  // namespace corridor

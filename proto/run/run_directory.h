@@ -1,14 +1,16 @@
 // Where everything of a run lies.
 //
 //   config.toml                  the resolved scenario
-//   manifest.json                run id, seed, versions, host
+//   manifest.json                proto/run/manifest.h
 //   sumo/                        network and traffic for SUMO (scenarios/)
 //   log/<process>.log            one text log a process
 //   metrics/<process>.jsonl      one JSON-lines file a process (proto/run/metrics.h)
 //   networks.safetensors         networks that were given to it (proto/run/networks.h)
 //   checkpoints/<round>/         proto/run/checkpoints.h
-//   evaluation/                  <planner>_<seed>.json; episodes/<planner>_<seed>_<episode>.json;
-//                                hindsight/<planner>_<seed>.json
+//   evaluation/                  by EvaluationName and EpisodeName (proto/run/episode_name.h):
+//     <evaluation>.json          proto/run/evaluation_record.h
+//     episodes/<episode>.json    proto/run/recorded_episode.h
+//     hindsight/<evaluation>.json  proto/run/hindsight_record.h
 //   scenarios/<name>/            the same, of evaluations in another scenario's world
 //   tensorboard/                 event files (cluster/watch/tensorboard.h)
 //   report/                      what `corridor report` wrote
@@ -20,6 +22,7 @@
 #include <string_view>
 #include <vector>
 
+#include "proto/run/episode_name.h"
 #include "proto/settings/sumo_names.h"
 
 namespace corridor {
@@ -54,6 +57,9 @@ class RunDirectory {
   std::filesystem::path evaluation() const { return root_ / "evaluation"; }
   std::filesystem::path episodes() const { return root_ / "evaluation" / "episodes"; }
   std::filesystem::path hindsight() const { return root_ / "evaluation" / "hindsight"; }
+  std::filesystem::path evaluation(const EvaluationName& name) const;
+  std::filesystem::path episode(const EpisodeName& name) const;
+  std::filesystem::path hindsight(const EvaluationName& name) const;
   // Where a run's networks were driven in other scenarios: a run directory for each, by its name.
   static std::filesystem::path scenarios(const std::filesystem::path& root) {
     return root / "scenarios";
@@ -63,11 +69,5 @@ class RunDirectory {
   explicit RunDirectory(std::filesystem::path root) : root_(std::move(root)) {}
   std::filesystem::path root_;
 };
-
-// manifest.json of a run, as every process needs it.
-struct RunManifest {
-  std::string run_id;
-};
-RunManifest read_manifest(const RunDirectory& directory);
 
 }  // namespace corridor

@@ -4,20 +4,20 @@
 #include <array>
 #include <cstddef>
 
+#include "proto/settings/choices.h"
+
 namespace corridor {
 
-enum class CollisionKind {
-  kRearEnded = 0,    // another vehicle ran into the ego from behind
-  kRearEnding = 1,   // the ego ran into another vehicle
-  kSideByOther = 2,  // another vehicle moved sideways into the ego
-  kSideByEgo = 3,    // the ego moved sideways into another vehicle
-  kOffRoad = 4,      // the ego's middle left the road: where a car has dynamics of its own
-};
-inline constexpr std::array kCollisionKinds = {"rear_ended", "rear_ending", "side_by_other",
-                                               "side_by_ego", "off_road"};
-
-inline const char* name_of(CollisionKind kind) {
-  return kCollisionKinds.at(static_cast<std::size_t>(kind));
-}
+enum class CollisionKind { kRearEnded, kRearEnding, kSideByOther, kSideByEgo, kOffRoad };
+template <>
+inline constexpr auto kChoices<CollisionKind> = std::to_array<Choice<CollisionKind>>({
+    {CollisionKind::kRearEnded, "rear_ended", "another vehicle ran into the ego from behind"},
+    {CollisionKind::kRearEnding, "rear_ending", "the ego ran into another vehicle"},
+    {CollisionKind::kSideByOther, "side_by_other", "another vehicle moved sideways into the ego"},
+    {CollisionKind::kSideByEgo, "side_by_ego", "the ego moved sideways into another vehicle"},
+    {CollisionKind::kOffRoad, "off_road",
+     "the ego's middle left the road: where a car has dynamics of its own"},
+});
+inline constexpr std::size_t kCollisionKinds = kChoices<CollisionKind>.size();
 
 }  // namespace corridor

@@ -6,11 +6,11 @@
 #include <set>
 
 #include "actor/driving/action.h"
+#include "actor/redrive.h"
 #include "actor/world/sumo_world.h"
 #include "proto/base/failure.h"
 #include "proto/settings/collision_kinds.h"
 #include "proto/settings/sumo_names.h"
-#include "proto/system/files.h"
 #include "scenarios/sumo_files.h"
 #include "tests/support/fake_world.h"
 #include "tests/support/recorded_collision.h"
@@ -137,11 +137,6 @@ class LookBack : public testing::Test {
  protected:
   LookBack() { config_.simulation.episode_steps = 100; }
 
-  RecordedEpisode recorded(const Json& episode) {
-    write_file(temporary_.path() / "episode.json", episode.dump());
-    return read_recorded_episode(config_, temporary_.path() / "episode.json");
-  }
-
   TemporaryDirectory temporary_;
   RunConfig config_;
 };
@@ -152,7 +147,7 @@ TEST_F(LookBack, AnEscapeThatIsFoundInSumoEscapesWhenDrivenAgain) {
   TimeAccount time;
   world::SumoWorld world(world::world_settings(config_), temporary_.path() / kSumoNetworkFile,
                          temporary_.path() / kSumoRoutesFile, time);
-  const RecordedEpisode episode = recorded(record_collision(config_, world));
+  const RecordedEpisode episode = record_collision(config_, world);
   const Hindsight hindsight = look_back(config_, episode, world, {});
   const int actions = static_cast<int>(hindsight.searches.size());
   ASSERT_EQ(hindsight.by_last(actions), Verdict::kAvoidable);
@@ -160,13 +155,13 @@ TEST_F(LookBack, AnEscapeThatIsFoundInSumoEscapesWhenDrivenAgain) {
   EXPECT_EQ(escape.size(), static_cast<std::size_t>(actions + kMarginSteps));
 
   Episode again(config_, world);
-  again.begin(episode.start);
-  while (again.summary().steps < episode.steps - actions) step_as_recorded(again, episode);
+  again.begin(start_of(episode));
+  while (again.summary().steps < episode.summary.steps - actions) step_as_recorded(again, episode);
   for (const std::uint8_t action : escape) {
     again.step(driving::Command::kKeep, action);
     EXPECT_FALSE(again.summary().collision) << "step " << again.summary().steps;
   }
-  EXPECT_EQ(again.summary().steps, episode.steps + kMarginSteps);
+  EXPECT_EQ(again.summary().steps, episode.summary.steps + kMarginSteps);
 
   const Hindsight twice = look_back(config_, episode, world, {});
   EXPECT_EQ(twice.searches.back().escape, escape);
@@ -194,8 +189,8 @@ class DoomedWorld : public FakeWorld {
 
 TEST_F(LookBack, WhatHappensWhateverTheEgoDoesIsUnavoidable) {
   DoomedWorld world(config_);
-  const RecordedEpisode episode = recorded(record_collision(config_, world));
-  ASSERT_EQ(episode.steps, DoomedWorld::kStep);
+  const RecordedEpisode episode = record_collision(config_, world);
+  ASSERT_EQ(episode.summary.steps, DoomedWorld::kStep);
   const Hindsight hindsight =
       look_back(config_, episode, world, {.actions = 2, .attempts_max = 500});
   EXPECT_EQ(hindsight.by_last(1), Verdict::kUnavoidable);
@@ -211,19 +206,19 @@ TEST_F(LookBack, WhatHappensWhateverTheEgoDoesIsUnavoidable) {
 
 TEST_F(LookBack, RefusesEpisodesWithoutACollisionAndThoseThatDoNotDriveAsRecorded) {
   FakeWorld world(config_);
-  Json episode = record_collision(config_, world);
-  Json other = episode;
-  other["trajectory_hash"] = "0123456789abcdef";
-  EXPECT_THAT([&] { look_back(config_, recorded(other), world, {}); },
+  RecordedEpisode episode = record_collision(config_, world);
+  RecordedEpisode other = episode;
+  other.trajectory_hash = "0123456789abcdef";
+  EXPECT_THAT([&] { look_back(config_, other, world, {}); },
               ThrowsMessage<Failure>(HasSubstr("does not drive again as recorded")));
 
   Episode free(config_, world);
-  free.begin({.seed = episode["episode_seed"]});
+  free.begin(start_of(episode));
   free.step(driving::Command::kKeep, 1);
-  episode["actions"] = free.actions();
-  episode["summary"]["steps"] = 1;
-  episode["trajectory_hash"] = fmt::format("{:016x}", free.trajectory_hash());
-  EXPECT_THAT([&] { look_back(config_, recorded(episode), world, {}); },
+  episode.actions = free.actions();
+  episode.summary = record_of(free.summary(), 1);
+  episode.trajectory_hash = free.trajectory_hash();
+  EXPECT_THAT([&] { look_back(config_, episode, world, {}); },
               ThrowsMessage<Failure>(HasSubstr("ends without a collision")));
 }
 

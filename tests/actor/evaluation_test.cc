@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include "proto/base/failure.h"
-#include "proto/base/json.h"
-#include "proto/system/files.h"
+#include <numeric>
+
+#include "proto/run/recorded_episode.h"
 #include "tests/support/fake_world.h"
 #include "tests/support/temporary_directory.h"
 
@@ -22,11 +22,11 @@ class Evaluation : public testing::Test {
                 std::vector<float>(config.parameters(Phase::kBp), 0.01f)};
   }
 
-  Json evaluate_pair(const char* pair, std::int64_t steps = 150) {
+  EvaluationRecord evaluate_pair(const std::string& planner, std::int64_t steps = 150) {
     FakeWorld world(config);
-    actor::evaluate(config, networks, {planner_pair(pair), 5, steps, {}}, run, world,
+    actor::evaluate(config, networks, {planner, 5, steps}, run, world,
                     [](std::int64_t) { return true; });
-    return read_json(run.evaluation() / (std::string(pair) + "_5.json"));
+    return read_evaluation(run.evaluation({planner, 5}));
   }
 
   TemporaryDirectory temporary;
@@ -36,78 +36,37 @@ class Evaluation : public testing::Test {
 };
 
 TEST_F(Evaluation, DrivesExactlyTheStepsAskedForAndSumsThemUp) {
-  const Json totals = evaluate_pair("rules");
-  EXPECT_EQ(totals["steps"], 150);
-  EXPECT_EQ(totals["episodes"], totals["per_episode"].size());
-  std::int64_t steps = 0;
-  double reward = 0.0;
-  for (const Json& episode : totals["per_episode"]) {
-    steps += episode["steps"].get<std::int64_t>();
-    reward += episode["bp_reward"].get<double>();
-    std::int64_t lane_steps = 0;
-    for (const auto& count : episode["lane_steps"]) lane_steps += count.get<std::int64_t>();
-    EXPECT_EQ(lane_steps, episode["steps"].get<std::int64_t>());
+  const EvaluationRecord record = evaluate_pair("rules");
+  EXPECT_EQ(record.steps, 150);
+  EXPECT_EQ(record.step_s, config.simulation.step_s);
+  EXPECT_EQ(record, evaluation_of({"rules", 5}, config.simulation.step_s, record.per_episode));
+  for (const EpisodeRecord& episode : record.per_episode) {
+    EXPECT_EQ(
+        std::accumulate(episode.lane_steps.begin(), episode.lane_steps.end(), std::int64_t{0}),
+        episode.steps);
   }
-  EXPECT_EQ(steps, 150);
-  EXPECT_DOUBLE_EQ(totals["bp_reward_per_1000"].get<double>(), 1000.0 * reward / 150.0);
-  std::int64_t by_kind = 0;
-  for (const auto& [kind, count] : totals["collisions_by_kind"].items()) {
-    by_kind += count.get<std::int64_t>();
-  }
-  EXPECT_EQ(by_kind, totals["collisions"].get<std::int64_t>());
 }
 
 TEST_F(Evaluation, GivesEveryPairTheSameTraffic) {
   for (const PlannerPair& pair : kPlannerPairs) {
     evaluate_pair(pair.name, 30);
-    const Json episode = read_json(run.episodes() / (std::string(pair.name) + "_5_0.json"));
-    EXPECT_EQ(episode["episode_seed"].get<std::uint64_t>(), test_episode_seed(5, 0)) << pair.name;
+    const RecordedEpisode episode = read_recorded_episode(run.episode({pair.name, 5, 0}));
+    EXPECT_EQ(episode.episode_seed, test_episode_seed(5, 0)) << pair.name;
+    EXPECT_EQ(episode.name(), (EpisodeName{pair.name, 5, 0}));
   }
 }
 
 TEST_F(Evaluation, WritesTheSameFilesTwice) {
-  const Json first = evaluate_pair("hierarchical");
+  const EvaluationRecord first = evaluate_pair("hierarchical");
   EXPECT_EQ(first, evaluate_pair("hierarchical"));
 }
 
-TEST_F(Evaluation, AnEpisodeDrivenAgainHasTheSameTrajectory) {
-  for (const char* pair : {"rules", "hierarchical", "sumo", "random+rules"}) {
-    evaluate_pair(pair);
-    FakeWorld world(config);
-    const Redriven result =
-        redrive(config, run.episodes() / (std::string(pair) + "_5_1.json"), world, {});
-    EXPECT_EQ(result.hash, result.recorded_hash) << pair;
-    EXPECT_GT(result.summary.steps, 0);
-  }
-}
-
-TEST_F(Evaluation, AChangedActionChangesTheTrajectory) {
-  evaluate_pair("rules");
-  const auto file = run.episodes() / "rules_5_0.json";
-  Json episode = read_json(file);
-  const int old_action = episode["actions"][3].get<int>();
-  episode["actions"][3] = old_action == 0 ? 26 : 0;
-  write_file(file, episode.dump());
+TEST_F(Evaluation, StoppedWritesNoTotals) {
   FakeWorld world(config);
-  const Redriven result = redrive(config, file, world, {});
-  EXPECT_NE(result.hash, result.recorded_hash);
-}
-
-TEST_F(Evaluation, RefusesWhatIsNoEpisode) {
-  FakeWorld world(config);
-  const auto file = temporary.path() / "file.json";
-  EXPECT_THROW(redrive(config, file, world, {}), Failure);
-  write_file(file, "{}");
-  EXPECT_THROW(redrive(config, file, world, {}), Failure);
-  evaluate_pair("rules");
-  Json episode = read_json(run.episodes() / "rules_5_0.json");
-  episode["actions"].erase(0);
-  write_file(file, episode.dump());
-  EXPECT_THROW(redrive(config, file, world, {}), Failure);
-  episode = read_json(run.episodes() / "rules_5_0.json");
-  episode["actions"][0] = 255;
-  write_file(file, episode.dump());
-  EXPECT_THROW(redrive(config, file, world, {}), Failure);
+  actor::evaluate(config, networks, {"rules", 5, 150}, run, world,
+                  [](std::int64_t) { return false; });
+  EXPECT_TRUE(std::filesystem::exists(run.episode({"rules", 5, 0})));
+  EXPECT_FALSE(std::filesystem::exists(run.evaluation({"rules", 5})));
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 
 #include "actor/evaluation.h"
 #include "proto/base/failure.h"
-#include "proto/system/files.h"
+#include "proto/run/recorded_episode.h"
 #include "tests/support/fake_world.h"
 #include "tests/support/temporary_directory.h"
 
@@ -26,9 +26,8 @@ class TraceEpisode : public testing::Test {
 
   std::filesystem::path evaluated(const std::string& pair) {
     FakeWorld world(config_);
-    actor::evaluate(config_, {}, {planner_pair(pair), 5, 40, {}}, run_, world,
-                    [](std::int64_t) { return true; });
-    return run_.episodes() / (pair + "_5_0.json");
+    actor::evaluate(config_, {}, {pair, 5, 40}, run_, world, [](std::int64_t) { return true; });
+    return run_.episode({pair, 5, 0});
   }
 
   testing_support::TemporaryDirectory temporary_;
@@ -40,13 +39,12 @@ TEST_F(TraceEpisode, HasTheStartAndWhatEachStepLedTo) {
   const std::filesystem::path file = evaluated("left+rules");
   FakeWorld world(config_);
   const EpisodeTrace trace = trace_episode(config_, nullptr, file, world);
-  const auto summary = read_json(file)["summary"];
-  ASSERT_EQ(trace.steps.size(), summary["steps"].get<std::size_t>() + 1);
-  EXPECT_EQ(trace.bp_reward, summary["bp_reward"].get<double>());
-  EXPECT_EQ(trace.lane_changes, summary["lane_changes"].get<int>());
-  EXPECT_EQ(trace.collision.has_value(), summary["collisions"] == 1);
-  EXPECT_NEAR(trace.steps.back().ego.s_m - trace.steps.front().ego.s_m,
-              summary["distance_m"].get<double>(), 1e-9);
+  const EpisodeRecord summary = read_recorded_episode(file).summary;
+  ASSERT_EQ(std::ssize(trace.steps), summary.steps + 1);
+  EXPECT_EQ(trace.bp_reward, summary.bp_reward);
+  EXPECT_EQ(trace.lane_changes, summary.lane_changes);
+  EXPECT_EQ(trace.collision.has_value(), summary.collisions == 1);
+  EXPECT_NEAR(trace.steps.back().ego.s_m - trace.steps.front().ego.s_m, summary.distance_m, 1e-9);
   EXPECT_TRUE(trace.steps.front().command);
   EXPECT_FALSE(trace.steps.back().command);
   EXPECT_EQ(trace.steps.front().ego.length_m, config_.ego.length_m);
@@ -103,9 +101,9 @@ TEST_F(TraceEpisode, HasNoCommandsWhereTheWorldDrives) {
 
 TEST_F(TraceEpisode, IsRefusedWhenItDoesNotDriveAgainAsRecorded) {
   const std::filesystem::path file = evaluated("rules");
-  auto episode = read_json(file);
-  episode["trajectory_hash"] = "0123456789abcdef";
-  write_file(file, episode.dump());
+  RecordedEpisode episode = read_recorded_episode(file);
+  episode.trajectory_hash = "0123456789abcdef";
+  write_recorded_episode(run_, episode);
   FakeWorld world(config_);
   EXPECT_THAT([&] { trace_episode(config_, nullptr, file, world); },
               ThrowsMessage<Failure>(HasSubstr("does not drive again as recorded")));

@@ -20,9 +20,6 @@ using testing::ThrowsMessage;
 
 class EvaluationPlaces : public testing::Test {
  protected:
-  EvaluationPlaces() {
-    write_file(directory_.manifest(), R"({"scenario": "scenarios/paper.toml"})");
-  }
   // As after the given number of rounds.
   void put_checkpoint(std::uint64_t rounds_done) {
     Checkpoints(directory_.checkpoints()).begin(rounds_done - 1);
@@ -114,7 +111,7 @@ TEST_F(EvaluationPlaces, TheRunsOwnWorldIsTheRunItself) {
 
 TEST_F(EvaluationPlaces, SettingsAloneChangeTheRunsOwnWorld) {
   const EvaluationPlace place = in({{}, {"dynamics.world=slip"}});
-  EXPECT_EQ(place.directory.root().filename(), "paper+world=slip");
+  EXPECT_EQ(place.directory.root().filename(), "fake+world=slip");
   EXPECT_EQ(place.config.dynamics.world, WorldKind::kSlip);
   EXPECT_THAT([&] { check_can_drive("sumo", place); },
               ThrowsMessage<Failure>(HasSubstr("dynamics.world = \"slip\"")));

@@ -3,11 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "proto/base/json.h"
 #include "proto/config/config_values.h"
 #include "proto/run/run_directory.h"
 #include "proto/system/files.h"
 #include "tests/support/failure_of.h"
+#include "tests/support/some_manifest.h"
 #include "tests/support/temporary_directory.h"
 
 namespace corridor::cluster {
@@ -31,7 +31,7 @@ class ExperimentDirectory : public testing::Test {
     std::filesystem::create_directories(directory_ / "runs");
     const RunDirectory run = RunDirectory::create(directory_ / "runs" / "first-1");
     write_file(run.config(), to_toml(config));
-    write_file(run.manifest(), Json({{"config", to_toml(config)}}).dump());
+    write_manifest(run, testing_support::some_manifest(config));
   }
 
   testing_support::TemporaryDirectory temporary_;

@@ -5,6 +5,7 @@
 
 #include "proto/base/failure.h"
 #include "proto/system/files.h"
+#include "tests/support/some_manifest.h"
 #include "tests/support/temporary_directory.h"
 
 namespace corridor::cluster {
@@ -28,9 +29,10 @@ TEST_F(ANewRun, IsGoneUnlessItIsKept) {
 
 TEST_F(ANewRun, HasWhatProcessesRead) {
   const NewRun run(root_);
-  run.fill({}, "# settings", "{}");
+  const RunManifest manifest = testing_support::some_manifest({});
+  run.fill({}, "# settings", manifest);
   EXPECT_EQ(read_file(run.directory().config()), "# settings");
-  EXPECT_EQ(read_file(run.directory().manifest()), "{}");
+  EXPECT_EQ(read_manifest(run.directory()), manifest);
   EXPECT_TRUE(std::filesystem::exists(run.directory().network()));
   EXPECT_TRUE(std::filesystem::exists(run.directory().routes()));
 }

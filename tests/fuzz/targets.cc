@@ -3,14 +3,14 @@
 #include <cstring>
 #include <string>
 
-#include "cluster/results/evaluation_result.h"
-#include "cluster/watch/line_tail.h"
 #include "cluster/watch/training_progress.h"
 #include "learner/learner_state.h"
 #include "proto/base/failure.h"
 #include "proto/base/json.h"
 #include "proto/config/config_values.h"
 #include "proto/config/run_config.h"
+#include "proto/run/actor_task.h"
+#include "proto/run/evaluation_record.h"
 #include "proto/run/metrics.h"
 #include "proto/run/tensor_file.h"
 #include "proto/wire/codec.h"
@@ -107,9 +107,9 @@ void read_checkpoint(std::string_view bytes) {
 // What `corridor` reads of what other processes wrote.
 void read_records(std::string_view text) {
   parse_metrics_line(text);
-  cluster::parse_step_count(text);
+  parse_step_count(text);
   const auto json = Json::parse(text, nullptr, /*allow_exceptions=*/false);
-  if (!json.is_discarded()) read_or_fail([&] { cluster::parse_evaluation(json, "fuzz"); });
+  if (!json.is_discarded()) read_or_fail([&] { parse_evaluation(json, "fuzz"); });
 }
 
 constexpr Target kTargets[] = {{"message", read_message},

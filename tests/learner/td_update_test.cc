@@ -221,11 +221,32 @@ TEST(TdUpdate, AgreesWithAHandComputation) {
 }
 
 TEST(TdUpdate, AddsUpThePrioritiesOfBothNetworks) {
-  const Batch batch = random_batch(0, 8);
-  const DqnSettings one = with_risk_weight(0.0), both = with_risk_weight(1e-9);
-  const auto reward = TdUpdate(kShape, one, Device::kCpu, start(kShape, one)).update(batch, 1e-3);
-  const auto sum = TdUpdate(kShape, both, Device::kCpu, start(kShape, both)).update(batch, 1e-3);
-  for (std::size_t i = 0; i < 8; ++i) EXPECT_GT(sum.priorities[i], reward.priorities[i]);
+  // Of last steps only, so that no next action matters; each network by itself sees its return in
+  // the column of the first.
+  Batch batch = random_batch(0, 8);
+  Batch of_risk = batch;
+  for (std::size_t i = 0; i < 8; ++i) {
+    float* row = batch.rows.data() + i * kLayout.stride();
+    row[kLayout.discount()] = row[kLayout.risk_discount()] = 0.0f;
+    float* risk_row = of_risk.rows.data() + i * kLayout.stride();
+    risk_row[kLayout.discount()] = 0.0f;
+    risk_row[kLayout.n_step_return()] = row[kLayout.risk_return()];
+  }
+  const DqnSettings one = with_risk_weight(0.0), both = with_risk_weight(1.5);
+  const std::vector<float> initial = initial_parameters(kShape, 5, Phase::kMop, 2);
+  const auto half = initial.begin() + static_cast<std::ptrdiff_t>(kShape.parameters());
+  const auto priorities = [](const DqnSettings& dqn, std::vector<float> parameters,
+                             const Batch& of) {
+    TdUpdate update(kShape, dqn, Device::kCpu, initial_td_state(std::move(parameters)));
+    return update.update(of, 1e-3).priorities;
+  };
+  const auto reward = priorities(one, {initial.begin(), half}, batch);
+  const auto risk = priorities(one, {half, initial.end()}, of_risk);
+  const auto sum = priorities(both, initial, batch);
+  for (std::size_t i = 0; i < 8; ++i) {
+    EXPECT_GT(risk[i], 0.0f);
+    EXPECT_FLOAT_EQ(sum[i], reward[i] + risk[i]) << i;
+  }
 }
 
 TEST(TdUpdate, CopiesTheTargetEverySoManyUpdates) {

@@ -22,7 +22,7 @@ inline EpisodeTrace driven_episode(std::size_t steps) {
   trace.speed_limit_mps = 13.89;
   trace.bp_reward = 500.0;
   trace.lane_changes = 7;
-  trace.collision = {"rear_ending", 9};
+  trace.collision = {CollisionKind::kRearEnding, 9};
   for (std::size_t i = 0; i < steps; ++i) {
     const double s_m = 10.0 * static_cast<double>(i);
     TracedStep step;

@@ -29,8 +29,8 @@ TEST_F(Plan, TrainingIsOneReplayServerOneLearnerAndTheActorsInThisOrder) {
   ASSERT_EQ(plan.size(), 4u);
   EXPECT_THAT(plan[0].argv, ElementsAre("/bin/x/corridor-replay", root_));
   EXPECT_THAT(plan[1].argv, ElementsAre("/bin/x/corridor-learner", root_));
-  EXPECT_THAT(plan[2].argv, ElementsAre("/bin/x/corridor-actor", root_, "--index", "0"));
-  EXPECT_THAT(plan[3].argv, ElementsAre("/bin/x/corridor-actor", root_, "--index", "1"));
+  EXPECT_THAT(plan[2].argv, ElementsAre("/bin/x/corridor-actor", "train", root_, "--index", "0"));
+  EXPECT_THAT(plan[3].argv, ElementsAre("/bin/x/corridor-actor", "train", root_, "--index", "1"));
   EXPECT_EQ(plan[1].name, kLearnerName);
 }
 
@@ -52,27 +52,30 @@ TEST_F(Plan, EveryPlannerIsEvaluatedOnEverySeed) {
                           EvaluationJob{"sumo", 7, 100}, EvaluationJob{"sumo", 8, 100}));
 }
 
-TEST_F(Plan, TrajectoriesAreWrittenOnlyWhenAskedFor) {
+// The task that corridor-actor understands of what is started.
+ActorTask task_of(const ProcessPlan& process) {
+  std::vector<const char*> argv;
+  for (const std::string& text : process.argv) argv.push_back(text.c_str());
+  EXPECT_EQ(process.argv.front(), "/p/corridor-actor");
+  return std::get<ActorCommand>(parse_actor_command(static_cast<int>(argv.size()), argv.data()))
+      .task;
+}
+
+TEST_F(Plan, TrajectoriesAndOtherNetworksAreAskedForOnlyWhereTheyAreGiven) {
   const EvaluationJob job{"rules+mop", 7, 100};
-  EXPECT_THAT(evaluation_process(job, directory_, directory_, "/p", "").argv,
-              ElementsAre("/p/corridor-actor", root_, "--evaluate", "rules+mop", "--seed", "7",
-                          "--steps", "100"));
-  EXPECT_THAT(evaluation_process(job, directory_, directory_, "/p", "/tmp/fcd").argv,
-              ElementsAre("/p/corridor-actor", root_, "--evaluate", "rules+mop", "--seed", "7",
-                          "--steps", "100", "--fcd", "/tmp/fcd"));
+  EvaluateTask task{"rules+mop", 7, 100};
+  EXPECT_EQ(task_of(evaluation_process(job, directory_, directory_, "/p", "")), ActorTask(task));
+  task.fcd = "/tmp/fcd";
+  EXPECT_EQ(task_of(evaluation_process(job, directory_, directory_, "/p", "/tmp/fcd")),
+            ActorTask(task));
   const RunDirectory other = RunDirectory::create(directory_.root() / "other");
-  EXPECT_THAT(evaluation_process(job, other, directory_, "/p", "").argv,
-              ElementsAre("/p/corridor-actor", other.root().string(), "--evaluate", "rules+mop",
-                          "--seed", "7", "--steps", "100", "--networks", root_));
-  EXPECT_EQ(evaluation_file(job, directory_), directory_.evaluation() / "rules+mop_7.json");
+  task = {"rules+mop", 7, 100, root_};
+  EXPECT_EQ(task_of(evaluation_process(job, other, directory_, "/p", "")), ActorTask(task));
 }
 
 TEST_F(Plan, ALookBackIsToldItsLimits) {
-  const EvaluationJob job{"rules+mop", 7, 100};
-  EXPECT_THAT(hindsight_process(job, {4, 1000}, directory_, "/p").argv,
-              ElementsAre("/p/corridor-actor", root_, "--look-back", "rules+mop", "--seed", "7",
-                          "--actions", "4", "--attempts", "1000"));
-  EXPECT_EQ(hindsight_file(job, directory_), directory_.hindsight() / "rules+mop_7.json");
+  EXPECT_EQ(task_of(hindsight_process({"rules+mop", 7, 100}, {3, 1000}, directory_, "/p")),
+            ActorTask(LookBackTask{"rules+mop", 7, {3, 1000}}));
 }
 
 }  // namespace

@@ -13,16 +13,16 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-EpisodeResult episode(std::int64_t steps, double bp_reward, std::int64_t collisions) {
-  EpisodeResult result;
+EpisodeRecord episode(std::int64_t steps, double bp_reward, std::int64_t collisions) {
+  EpisodeRecord result;
   result.steps = steps;
   result.bp_reward = bp_reward;
   result.collisions = collisions;
   return result;
 }
 
-EvaluationResult evaluation(std::uint64_t seed, std::vector<EpisodeResult> episodes) {
-  EvaluationResult result;
+EvaluationRecord evaluation(std::uint64_t seed, std::vector<EpisodeRecord> episodes) {
+  EvaluationRecord result;
   result.planner = "rules";
   result.seed = seed;
   result.per_episode = std::move(episodes);
@@ -30,11 +30,11 @@ EvaluationResult evaluation(std::uint64_t seed, std::vector<EpisodeResult> episo
 }
 
 TEST(TypicalEpisode, IsTheMedianOfTheWholeOnesWithoutCollision) {
-  const std::vector<EvaluationResult> results = {
+  const std::vector<EvaluationRecord> results = {
       evaluation(7, {episode(1000, 300, 0), episode(800, 350, 1), episode(1000, 500, 0)}),
       evaluation(8, {episode(1000, 420, 0), episode(200, 10, 0)})};
-  EXPECT_EQ(typical_episode(results), (ChosenEpisode{"rules", 8, 0}));
-  EXPECT_EQ(typical_episode(results)->name(), "rules_8_0");
+  EXPECT_EQ(typical_episode(results), (EpisodeName{"rules", 8, 0}));
+  EXPECT_EQ(typical_episode(results)->text(), "rules_8_0");
 }
 
 TEST(TypicalEpisode, IsNoneWhereEveryEpisodeEndsInACollision) {
@@ -42,10 +42,10 @@ TEST(TypicalEpisode, IsNoneWhereEveryEpisodeEndsInACollision) {
 }
 
 TEST(FailedEpisode, IsTheFirstWithACollisionThatHasABefore) {
-  const std::vector<EvaluationResult> results = {
+  const std::vector<EvaluationRecord> results = {
       evaluation(7, {episode(1000, 300, 0), episode(2, 1, 1)}),
       evaluation(8, {episode(600, 300, 1), episode(500, 200, 1)})};
-  EXPECT_EQ(failed_episode(results), (ChosenEpisode{"rules", 8, 0}));
+  EXPECT_EQ(failed_episode(results), (EpisodeName{"rules", 8, 0}));
   EXPECT_EQ(failed_episode({results[0]}), std::nullopt);
 }
 

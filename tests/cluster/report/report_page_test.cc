@@ -11,8 +11,8 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-EvaluationResult result(const char* planner, std::uint64_t seed, std::int64_t steps) {
-  EvaluationResult result;
+EvaluationRecord result(const char* planner, std::uint64_t seed, std::int64_t steps) {
+  EvaluationRecord result;
   result.planner = planner;
   result.seed = seed;
   result.steps = steps;

@@ -61,10 +61,10 @@ TEST(TrainingFigures, HaveTheLevelOfTheRulesThatFitsThePhase) {
                          {metric::kCollisionsPer1000, 1.0},
                          {metric::kEpisodicReturn, 1.0},
                          {metric::kEpisodes, 1.0}})};
-  EvaluationResult rules;
+  EvaluationRecord rules;
   rules.planner = "rules";
   rules.per_episode = {{1000, 500.0, 800.0, 2, 0, 0, 0.0, {}}};
-  EvaluationResult random = rules;
+  EvaluationRecord random = rules;
   random.planner = "random+rules";
   random.per_episode[0].mop_reward = 700.0;
   run.evaluations[""] = {rules, random};

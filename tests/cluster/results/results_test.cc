@@ -12,9 +12,9 @@ namespace {
 
 // Episodes of 1000 and 500 steps at 12.5 m/s, 30 lane changes, 15 hard brakes and 6 bypasses in
 // all.
-EvaluationResult result(const std::string& planner, std::uint64_t seed, double reward_per_1000,
+EvaluationRecord result(const std::string& planner, std::uint64_t seed, double reward_per_1000,
                         std::int64_t collisions = 3) {
-  EvaluationResult result;
+  EvaluationRecord result;
   result.planner = planner;
   result.seed = seed;
   result.steps = 1500;
@@ -113,7 +113,7 @@ TEST(Arms, InWhichNothingIsLearnedCountOnceForAllTrainingSeeds) {
   EXPECT_EQ(arm.steps, 3000);
   EXPECT_EQ(arm[Quantity::kBpReward].interval, expected[Quantity::kBpReward].interval);
 
-  EvaluationResult longer = result("rules", 1002, 700);
+  EvaluationRecord longer = result("rules", 1002, 700);
   longer.steps = 40'000;
   EXPECT_EQ(arms_of({once[0], {2, longer}})[0].steps, 40'000) << "of one seed the longest";
 }
@@ -135,13 +135,13 @@ TEST(Ratios, AreThoseOfTheEstimatesWithTheIntervalsOfBoth) {
 
 TEST(Ratios, AreWiderThanEitherSideAlone) {
   std::vector<SeedResult> results;
-  EvaluationResult noisy = result("hierarchical", 1002, 500);
-  EvaluationResult rules = result("rules", 1002, 500);
+  EvaluationRecord noisy = result("hierarchical", 1002, 500);
+  EvaluationRecord rules = result("rules", 1002, 500);
   noisy.per_episode.clear();
   rules.per_episode.clear();
   for (std::uint64_t i = 0; i < 50; ++i) {
     const auto episode = [&](std::uint64_t purpose) {
-      return EpisodeResult{
+      return EpisodeRecord{
           1000, 1000 * random_unit(purpose, Purpose::kTraffic, {i}), 0.0, 0, 1, 1, 12500.0, {1000}};
     };
     noisy.per_episode.push_back(episode(1));
@@ -158,7 +158,7 @@ TEST(Ratios, AreWiderThanEitherSideAlone) {
 }
 
 TEST(Ratios, AreNothingWhereTheBaselineHasNone) {
-  EvaluationResult rules = result("rules", 1002, -5, 0);
+  EvaluationRecord rules = result("rules", 1002, -5, 0);
   const std::vector<Arm> arms = arms_of({{1, result("hierarchical", 1002, 600)}, {1, rules}});
   EXPECT_FALSE(arms[0].to_rules->at(0));
   EXPECT_FALSE(arms[0].to_rules->at(1));
@@ -167,9 +167,9 @@ TEST(Ratios, AreNothingWhereTheBaselineHasNone) {
 }
 
 TEST(Arms, ThatStoodStillHaveZerosAndNotWhatDividesByThem) {
-  EvaluationResult still = result("keep+mop", 1002, 0, 0);
+  EvaluationRecord still = result("keep+mop", 1002, 0, 0);
   still.distance_km = still.mean_speed_kph = 0.0;
-  for (EpisodeResult& episode : still.per_episode) episode.distance_m = 0.0;
+  for (EpisodeRecord& episode : still.per_episode) episode.distance_m = 0.0;
   const Arm arm = arms_of({{1, still}})[0];
   EXPECT_EQ(arm[Quantity::kSpeed].value, 0.0);
   EXPECT_EQ(arm[Quantity::kLaneChangesPerKm].interval, (Interval{0.0, 0.0}));

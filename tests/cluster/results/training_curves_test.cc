@@ -78,9 +78,9 @@ TEST(Band, RunsFromTheLowestToTheHighestWhereAllCurvesAre) {
               ElementsAre(BandPoint{10, 5.0, 5.0, 5.0}, BandPoint{20, -2.0, -2.0, -2.0}));
 }
 
-EvaluationResult result(const char* planner, std::uint64_t seed,
-                        std::vector<EpisodeResult> episodes) {
-  EvaluationResult result;
+EvaluationRecord result(const char* planner, std::uint64_t seed,
+                        std::vector<EpisodeRecord> episodes) {
+  EvaluationRecord result;
   result.planner = planner;
   result.seed = seed;
   result.per_episode = std::move(episodes);
@@ -88,7 +88,7 @@ EvaluationResult result(const char* planner, std::uint64_t seed,
 }
 
 TEST(Level, IsInTheUnitsOfTheCurvesOfItsPhase) {
-  const std::vector<EvaluationResult> results = {
+  const std::vector<EvaluationRecord> results = {
       result("rules", 1, {{100, 60.0, 80.0, 0, 0, 0, 0.0, {}}, {50, 20.0, 10.0, 1, 0, 0, 0.0, {}}}),
       result("sumo", 1, {{100, 1e6, 1e6, 0, 0, 0, 0.0, {}}}),
       result("rules", 1, {{100, 1e6, 1e6, 0, 0, 0, 0.0, {}}}),

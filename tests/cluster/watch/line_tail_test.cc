@@ -45,12 +45,5 @@ TEST_F(Tail, BeginsAgainWhenTheFileIsWrittenAnew) {
   EXPECT_THAT(tail.read(), ElementsAre("x"));
 }
 
-TEST(StepCount, IsReadFromLinesOfThatFormOnly) {
-  EXPECT_EQ(parse_step_count("1200/40000"), 1200);
-  for (const char* text : {"", "/", "12", "12/", "/40", "12/40 ", "a 12/40", "12/40/7"}) {
-    EXPECT_FALSE(parse_step_count(text)) << text;
-  }
-}
-
 }  // namespace
 }  // namespace corridor::cluster

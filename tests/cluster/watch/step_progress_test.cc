@@ -5,7 +5,7 @@
 
 #include <fstream>
 
-#include "cluster/watch/line_tail.h"
+#include "proto/run/actor_task.h"
 #include "tests/support/temporary_directory.h"
 
 namespace corridor::cluster {
@@ -26,8 +26,10 @@ TEST(StepProgress, AddsUpWhatTheFilesSay) {
       << "nothing was done yet that would tell";
   EXPECT_EQ(progress.details(), "1 of 3 done");
 
-  std::ofstream(first) << "some noise\n250/1000\n500/1000\n";
-  std::ofstream(second) << "1000/1000\n";
+  std::ofstream(first) << "some noise\n"
+                       << step_count(250, 1000) << "\n"
+                       << step_count(500, 1000) << "\n";
+  std::ofstream(second) << step_count(1000, 1000) << "\n";
   progress.tick(101.0);
   EXPECT_THAT(progress.headline(103.0),
               HasSubstr("87.5 %  3,500 of 4,000 steps  500 steps/s  1 s left"));

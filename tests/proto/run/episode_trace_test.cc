@@ -20,7 +20,7 @@ EpisodeTrace trace() {
   trace.speed_limit_mps = 13.89;
   trace.bp_reward = 4.5;
   trace.lane_changes = 1;
-  trace.collision = {"rear_ending", 8};
+  trace.collision = {CollisionKind::kRearEnding, 8};
   trace.steps = {{{0, 100.0, 4.8, 10.0, 5.0, 1.8}, 1, {{8, 120.0, 4.7, 9.0, 10.0, 2.4}}},
                  {{0, 105.0, 4.8, 10.5, 5.0, 1.8}, std::nullopt, {}}};
   return trace;

@@ -123,18 +123,6 @@ TEST_F(Runs, NeedAConfigAndAManifestToBeOpened) {
   EXPECT_EQ(RunDirectory::open(root_).root(), root_);
 }
 
-TEST_F(Runs, TheManifestsRunIdIsChecked) {
-  const RunDirectory run = create();
-  const std::string id = "0123456789abcdef0123456789abcdef";
-  write_file(run.manifest(), R"({"run_id": ")" + id + R"(", "seed": 1})");
-  EXPECT_EQ(read_manifest(run).run_id, id);
-  for (const char* bad : {"{}", "[]", R"({"run_id": 3})", R"({"run_id": "abc"})",
-                          R"({"run_id": "0123456789abcdef0123456789abcdeg"})"}) {
-    write_file(run.manifest(), bad);
-    EXPECT_THAT(failure_of([&] { read_manifest(run); }), HasSubstr("run_id is not 32 hex")) << bad;
-  }
-}
-
 TEST(Addresses, OfTcpAreTheConfiguredPorts) {
   RunSettings settings;
   settings.transport = Transport::kTcp;
