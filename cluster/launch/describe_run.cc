@@ -1,4 +1,4 @@
-#include "cluster/launch/manifest.h"
+#include "cluster/launch/describe_run.h"
 
 #include <array>
 #include <cstdio>
