@@ -15,7 +15,7 @@ constexpr const char* kUnavoidable = "unavoidable";
 constexpr const char* kUndecided = "undecided";
 
 std::string verdict(const Json& value) {
-  const auto text = value.get<std::string>();
+  auto text = value.get<std::string>();
   if (text != kAvoidable && text != kUnavoidable && text != kUndecided) {
     throw Failure("'{}' is no verdict", text);
   }

@@ -15,8 +15,8 @@
 #include <optional>
 #include <string>
 
-#include "proto/system/clock.h"
 #include "proto/settings/limits.h"
+#include "proto/system/clock.h"
 #include "proto/wire/bytes.h"
 #include "proto/wire/codec.h"
 #include "proto/wire/messages.h"
