@@ -25,7 +25,7 @@ TdState part_of(const TdState& state, std::size_t start, std::size_t size) {
 
 }  // namespace
 
-TdState initial_td_state(std::vector<float> parameters) {
+TdState initial_td_state(const std::vector<float>& parameters) {
   const std::vector<float> zeros(parameters.size(), 0.0f);
   return {parameters, parameters, zeros, zeros, 0};
 }

@@ -14,7 +14,7 @@
 namespace corridor::learner {
 
 // The state before the first update: target = online, no moments.
-TdState initial_td_state(std::vector<float> parameters);
+TdState initial_td_state(const std::vector<float>& parameters);
 
 class TdUpdate {
  public:

@@ -73,10 +73,10 @@ Training::Training(const RunConfig& config, Surroundings surroundings, LearnerSt
       checkpointer_(config_, Checkpoints(around_.directory.checkpoints()), around_.replay,
                     around_.clock),
       checkpointed_(state_.next_round) {
-  begin_phase(std::move(state_.td));
+  begin_phase(state_.td);
 }
 
-void Training::begin_phase(TdState initial) {
+void Training::begin_phase(const TdState& initial) {
   td_ = std::make_unique<TdUpdate>(config_.network(phase_), dqn(), config_.run.device, initial);
 }
 

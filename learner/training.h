@@ -76,7 +76,7 @@ class Training {
   BlockResult train_block(std::uint64_t round, const Opened& opened);
   void consider(const SelectionOutcome& outcome);
   void finish_block(std::uint64_t round, std::uint32_t updates);
-  void begin_phase(TdState initial);
+  void begin_phase(const TdState& initial);
   // The whole state, td_'s included.
   LearnerState state() const;
   // Begins a checkpoint of the state when there is none of it yet, and waits for it.

@@ -84,7 +84,7 @@ Json known_files(const std::optional<fs::path>& checkpoint) {
 }  // namespace
 
 fs::path Checkpoints::begin(std::uint64_t round) const {
-  const fs::path partial = directory_ / (std::to_string(round) + ".partial");
+  fs::path partial = directory_ / (std::to_string(round) + ".partial");
   on_disk("create", partial, [&] {
     fs::remove_all(partial);
     fs::create_directories(partial);

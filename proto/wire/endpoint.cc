@@ -79,7 +79,7 @@ zmq::message_t message_of(Body body) {
   zmq::message_t message(
       const_cast<std::byte*>(bytes.data()), bytes.size(),
       [](void*, void* hint) { delete static_cast<Body*>(hint); }, owned.get());
-  owned.release();
+  static_cast<void>(owned.release());
   return message;
 }
 
