@@ -5,8 +5,8 @@
 
 #include "cluster/evaluate.h"
 #include "cluster/experiment_plan.h"
-#include "cluster/launch/local.h"
 #include "cluster/launch/describe_run.h"
+#include "cluster/launch/local.h"
 #include "cluster/launch/plan.h"
 #include "cluster/results/results_tables.h"
 #include "cluster/watch/line_tail.h"

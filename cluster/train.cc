@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <csignal>
 
-#include "cluster/launch/local.h"
 #include "cluster/launch/describe_run.h"
+#include "cluster/launch/local.h"
 #include "cluster/launch/plan.h"
 #include "cluster/launch/run_lock.h"
 #include "cluster/new_run.h"

@@ -120,7 +120,7 @@ void print_memory(const RunDirectory& run) {
   for (const std::string& process :
        {actor_name(0), std::string(kLearnerName), std::string(kReplayName)}) {
     const auto line = last_metrics_line(run.metrics(process));
-    if (line) std::printf("  %s %.0f MB", process, value_of(line->values, "memory_mb"));
+    if (line) std::printf("  %s %.0f MB", process.c_str(), value_of(line->values, "memory_mb"));
   }
   std::printf("\n");
 }
