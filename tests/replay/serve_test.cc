@@ -152,10 +152,11 @@ TEST_F(ServeTest, SaysWhomItWaitsForWhenABlockStaysUnopenedForLong) {
   learner.send(encode(ReplayRequest{OpenBlock{0}}));
   while (delays_ == 0) learner.receive(Duration{1});
   Client actor = connect(Role::kActor, 1);
-  // Each is answered in a turn of its own: the first after the block's, the last after the chunk's.
   ask(actor, Join{});
-  time_.advance(std::chrono::seconds(6));
   ask(actor, mop_chunk(0, 1));
+  time_.advance(std::chrono::seconds(6));
+  // Each is answered in a turn of its own, at whose end the server looks at the clock.
+  ask(actor, Join{});
   ask(actor, Join{});
   EXPECT_THAT(testing::internal::GetCapturedStderr(),
               HasSubstr("block 0 waits for the chunks of actors 0 2"));
