@@ -493,13 +493,13 @@ TEST(Endpoint, AServerThatMakesAClientWaitIsNotLost) {
   Client client(address, "server", actor(0), {}, time.clock());
   client.send({});
   Header header;
-  for (int second = 0; second < 300; ++second) {
+  for (int second = 0; second < 100; ++second) {
     header = server.receive();
     EXPECT_EQ(header.sequence, 1U);
     header.kind = MessageKind::kPending;
     server.send_frames({encode(header), {}});
     time.advance(seconds(1));
-    ASSERT_FALSE(client.receive(Duration::zero()));
+    ASSERT_FALSE(client.receive(Duration{5}));  // for the answer to have come
   }
   header.kind = MessageKind::kReply;
   server.send_frames({encode(header), bytes_of("at last")});
