@@ -171,7 +171,7 @@ std::optional<Opened> Training::await_block(std::uint64_t round) {
     }
     if (!around_.stop_requested()) return false;
     if (!stopping) stopping = around_.clock();
-    return around_.clock() - *stopping > around_.stop_patience;
+    return around_.clock() - *stopping >= around_.stop_patience;
   };
   return around_.replay.open_block(round, give_up);
 }
