@@ -100,14 +100,15 @@ int supervise(const RunConfig& config, const RunDirectory& directory, std::uint6
 RunConfig changed_config(const ResumeOptions& options, const RunDirectory& directory) {
   const RunConfig at_start = config_at_start(directory);
   const RunConfig config = load_run_config(directory.config(), options.settings);
-  for (const ChangedKey& key : changed_keys(at_start, config)) {
+  const std::vector<ChangedKey> changed = changed_keys(at_start, config);
+  for (const ChangedKey& key : changed) {
     if (!decides_result(key.heeds)) continue;
     throw Failure(
         "{} = {}: the run began with {}, and its result depends on it; put that back, or "
         "train anew",
         key.name, key.now, key.before);
   }
-  for (const ChangedKey& key : changed_keys(at_start, config)) {
+  for (const ChangedKey& key : changed) {
     fmt::print("{} = {}, where the run began with {}\n", key.name, key.now, key.before);
   }
   if (!options.settings.empty()) write_file(directory.config(), to_toml(config));

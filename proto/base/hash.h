@@ -45,4 +45,11 @@ class Hash {
   std::unique_ptr<XXH3_state_t, Free> state_;
 };
 
+// Of bytes, in hex.
+inline std::string hash_of(std::string_view content) {
+  Hash hash;
+  hash.add(content.data(), content.size());
+  return hash.hex();
+}
+
 }  // namespace corridor

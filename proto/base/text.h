@@ -1,7 +1,9 @@
-// Numbers as people read them.
+// Numbers as people read them, and read from text.
 #pragma once
 
+#include <charconv>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -16,5 +18,15 @@ std::string duration_text(double seconds);
 
 // "a, b, c".
 std::string listed(const std::vector<std::string>& texts, std::string_view separator = ", ");
+
+// The number that the whole text is; nothing when it is none, or one that T does not hold.
+template <typename T>
+std::optional<T> parse_number(std::string_view text) {
+  T number{};
+  const char* const end = text.data() + text.size();
+  const auto [rest, error] = std::from_chars(text.data(), end, number);
+  if (error != std::errc() || rest != end) return std::nullopt;
+  return number;
+}
 
 }  // namespace corridor

@@ -1,12 +1,11 @@
 #include "proto/config/config_values.h"
 
 #include <algorithm>
-#include <any>
 #include <type_traits>
 
 #include "proto/base/text.h"
-#include "proto/config/config_checks.h"
 #include "proto/config/config_keys.h"
+#include "proto/config/run_config.h"
 #include "proto/config/toml_text.h"
 
 namespace corridor {
@@ -70,45 +69,14 @@ std::vector<ListedKey> keys_in(RunConfig config) {  // a copy: visitors may writ
   return lister.result();
 }
 
-class ValueCollector {
- public:
-  void table(const char*, const char*, Heeds) {}
-  template <typename T, typename... Range>
-  void key(const ConfigKey&, const T& value, const Range&...) {
-    values_.emplace_back(value);
-  }
-  const std::vector<std::any>& result() const { return values_; }
-
- private:
-  std::vector<std::any> values_;
-};
-
-// Takes what a world sets from the values of another configuration.
-class WorldSetter {
- public:
-  explicit WorldSetter(const std::vector<std::any>& values) : next_(values.begin()) {}
-  void table(const char*, const char*, Heeds heeds) { heeds_ = heeds; }
-  template <typename T, typename... Range>
-  void key(const ConfigKey& key, T& value, const Range&...) {
-    const std::any& other = *next_++;
-    if (set_by_world(key.heeds.value_or(heeds_))) value = std::any_cast<const T&>(other);
-  }
-
- private:
-  std::vector<std::any>::const_iterator next_;
-  Heeds heeds_ = {};
-};
-
 }  // namespace
 
-RunConfig in_world(const RunConfig& trained, RunConfig world, const std::string& name) {
-  ValueCollector collector;
-  config_keys::describe(world, collector);
-  WorldSetter setter(collector.result());
-  RunConfig config = trained;
-  config_keys::describe(config, setter);
-  check_config(config, name);
-  return config;
+RunConfig in_world(const RunConfig& trained, const RunConfig& world, const std::string& name) {
+  std::vector<std::string> overrides;
+  for (const ListedKey& key : keys_in(world)) {
+    if (set_by_world(key.heeds)) overrides.push_back(fmt::format("{}={}", key.name, key.value));
+  }
+  return with_overrides(trained, name, overrides);
 }
 
 std::string to_toml(const RunConfig& config) {

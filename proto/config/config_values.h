@@ -12,7 +12,7 @@ namespace corridor {
 // What was trained as `trained` says, in the world that `world` describes: each key of set_by_world
 // is `world`'s, all others are as trained. Throws Failure naming `name` where the two do not fit
 // each other.
-RunConfig in_world(const RunConfig& trained, RunConfig world, const std::string& name);
+RunConfig in_world(const RunConfig& trained, const RunConfig& world, const std::string& name);
 
 // The keys whose values differ, in the order of to_toml.
 struct ChangedKey {

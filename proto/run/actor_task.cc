@@ -1,10 +1,10 @@
 #include "proto/run/actor_task.h"
 
-#include <charconv>
 #include <tuple>
 #include <type_traits>
 
 #include "proto/base/failure.h"
+#include "proto/base/text.h"
 #include "proto/system/command_line.h"
 
 namespace corridor {
@@ -77,13 +77,10 @@ std::string step_count(std::int64_t done, std::int64_t total) {
 }
 
 std::optional<std::int64_t> parse_step_count(std::string_view text) {
-  std::int64_t steps = 0, total = 0;
-  const char* const end = text.data() + text.size();
-  const auto [slash, error] = std::from_chars(text.data(), end, steps);
-  if (error != std::errc() || slash == end || *slash != '/') return std::nullopt;
-  const auto [rest, total_error] = std::from_chars(slash + 1, end, total);
-  if (total_error != std::errc() || rest != end) return std::nullopt;
-  return steps;
+  const std::size_t slash = text.find('/');
+  if (slash == std::string_view::npos) return std::nullopt;
+  if (!parse_number<std::int64_t>(text.substr(slash + 1))) return std::nullopt;
+  return parse_number<std::int64_t>(text.substr(0, slash));
 }
 
 }  // namespace corridor

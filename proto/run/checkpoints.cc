@@ -1,7 +1,6 @@
 #include "proto/run/checkpoints.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cinttypes>
 #include <cstdio>
 #include <utility>
@@ -9,6 +8,7 @@
 #include "proto/base/failure.h"
 #include "proto/base/hash.h"
 #include "proto/base/json.h"
+#include "proto/base/text.h"
 #include "proto/run/run_directory.h"
 #include "proto/system/files.h"
 #include "proto/system/pulse.h"
@@ -21,11 +21,7 @@ namespace fs = std::filesystem;
 constexpr const char* kManifest = "manifest.json";
 
 std::optional<std::uint64_t> round_of(const fs::path& path) {
-  const std::string name = path.filename().string();
-  std::uint64_t round = 0;
-  const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), round);
-  if (error != std::errc() || end != name.data() + name.size()) return std::nullopt;
-  return round;
+  return parse_number<std::uint64_t>(path.filename().string());
 }
 
 // Ascending.
@@ -37,12 +33,6 @@ std::vector<std::uint64_t> rounds_in(const fs::path& directory) {
   }
   std::sort(rounds.begin(), rounds.end());
   return rounds;
-}
-
-std::string hash_of(std::string_view content) {
-  Hash hash;
-  hash.add(content.data(), content.size());
-  return hash.hex();
 }
 
 // "files" of a manifest.

@@ -1,8 +1,7 @@
 #include "proto/run/episode_name.h"
 
-#include <charconv>
-
 #include "proto/base/format.h"
+#include "proto/base/text.h"
 
 namespace corridor {
 namespace {
@@ -11,12 +10,8 @@ namespace {
 std::optional<std::uint64_t> cut_number(std::string_view& text) {
   const std::size_t at = text.rfind('_');
   if (at == std::string_view::npos) return std::nullopt;
-  const std::string_view digits = text.substr(at + 1);
-  std::uint64_t number = 0;
-  const char* const end = digits.data() + digits.size();
-  const auto [rest, error] = std::from_chars(digits.data(), end, number);
-  if (error != std::errc() || rest != end) return std::nullopt;
-  text = text.substr(0, at);
+  const auto number = parse_number<std::uint64_t>(text.substr(at + 1));
+  if (number) text = text.substr(0, at);
   return number;
 }
 

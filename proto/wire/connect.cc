@@ -5,12 +5,6 @@
 namespace corridor {
 namespace {
 
-std::string hash_of(std::string_view content) {
-  Hash hash;
-  hash.add(content.data(), content.size());
-  return hash.hex();
-}
-
 ClientLimits limits_of(const RunSettings& settings) {
   return {.peer_timeout =
               std::chrono::round<Duration>(std::chrono::duration<double>(settings.peer_timeout_s))};

@@ -33,6 +33,7 @@ inline constexpr std::uint64_t kMopRounds = 6;
 inline constexpr std::uint64_t kBpRounds = 5;
 inline constexpr int kActors = 2;
 inline constexpr int kRowsPerChunk = 8;
+inline constexpr Duration kStopPatience = std::chrono::minutes(2);
 
 inline RunConfig small_config() {
   RunConfig config;
@@ -104,7 +105,8 @@ class SmallRun {
       : config_(std::move(config)), schedule_(config_), directory_(directory) {}
 
   // Round of which actors send nothing: once its block is next, they go, and the learner is asked
-  // to stop; or, if they hang, minutes pass for it whenever it looks whether it is.
+  // to stop, or, if they hang, is not. From then on minutes pass for it whenever it looks whether
+  // it is; before, no time does.
   std::uint64_t actors_end_at = UINT64_MAX;
   bool actors_hang = false;
   // Asks the learner to stop once an actor has got this version.
@@ -164,7 +166,7 @@ class SmallRun {
     };
     Training training(
         config_,
-        {directory_, replay, publisher, metrics, time, stop, Duration{0}, delay, clock_.clock()},
+        {directory_, replay, publisher, metrics, time, stop, kStopPatience, delay, clock_.clock()},
         load_state(config_, directory_));
     return training.run();
   }
@@ -204,7 +206,8 @@ class SmallRun {
       const Weights got = std::get<Weights>(decode_learner_reply(*body));
       note(got);
       if (goes) {
-        (actors_hang ? minutes_pass_ : stop_learner_) = true;
+        if (!actors_hang) stop_learner_ = true;
+        minutes_pass_ = true;
         return;
       }
       if (schedule_.selects_in(round)) {

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace corridor::cluster {
+namespace corridor {
 namespace {
 
 TEST(Grouped, PutsACommaBeforeEveryThreeDigits) {
@@ -22,6 +22,14 @@ TEST(DurationText, ChoosesTheUnitsByLengthAndRoundsBeforeItDoes) {
   EXPECT_EQ(duration_text(4000), "1 h 06 min");
 }
 
+TEST(ParseNumber, TakesTheWholeTextOrNothing) {
+  EXPECT_EQ(parse_number<std::int64_t>("-12"), -12);
+  EXPECT_EQ(parse_number<double>("1.5"), 1.5);
+  for (const char* text : {"", " 1", "1 ", "1x", "x", "-1", "99999999999999999999"}) {
+    EXPECT_FALSE(parse_number<std::uint64_t>(text)) << text;
+  }
+}
+
 TEST(Listed, PutsCommasBetween) {
   EXPECT_EQ(listed({}), "");
   EXPECT_EQ(listed({"a"}), "a");
@@ -30,4 +38,4 @@ TEST(Listed, PutsCommasBetween) {
 }
 
 }  // namespace
-}  // namespace corridor::cluster
+}  // namespace corridor

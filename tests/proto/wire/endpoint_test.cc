@@ -7,11 +7,13 @@
 #include <unistd.h>
 
 #include <csignal>
+#include <thread>
 #include <zmq.hpp>
 
 #include "proto/base/format.h"
 #include "proto/base/random.h"
 #include "proto/system/identity.h"
+#include "tests/proto/wire/raw_peers.h"
 #include "tests/support/failure_of.h"
 #include "tests/support/manual_clock.h"
 
@@ -20,19 +22,16 @@ namespace {
 
 using std::chrono::seconds;
 using testing::HasSubstr;
+using testing_support::bytes_of;
+using testing_support::FlakyLink;
+using testing_support::kRun;
+using testing_support::kSoon;
 using testing_support::ManualClock;
+using testing_support::RawClient;
+using testing_support::RawServer;
+using testing_support::text_of;
 
-const std::string kRun(32, 'a');
-constexpr Duration kSoon{10'000};  // for what must come: reached only by a failing test
 constexpr Duration kBrief{5};
-
-Bytes bytes_of(const std::string& text) {
-  const auto* data = reinterpret_cast<const std::byte*>(text.data());
-  return {data, data + text.size()};
-}
-std::string text_of(ByteView bytes) {
-  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
-}
 
 Address fresh_address() {
   static int count = 0;
@@ -44,72 +43,6 @@ ClientIdentity actor(std::uint32_t index, std::uint64_t incarnation = 1) {
 }
 
 ClientLimits quick() { return {.resend_after = kBrief, .peer_timeout = kSoon, .window = 8}; }
-
-// A client without manners: sends what the test says.
-class RawClient {
- public:
-  explicit RawClient(const Address& address) {
-    socket_.set(zmq::sockopt::linger, 0);
-    socket_.set(zmq::sockopt::rcvtimeo, static_cast<int>(kSoon.count()));
-    socket_.connect(address);
-  }
-  void send_frames(const std::vector<Bytes>& frames) {
-    for (std::size_t i = 0; i < frames.size(); ++i) {
-      socket_.send(zmq::buffer(frames[i]),
-                   i + 1 < frames.size() ? zmq::send_flags::sndmore : zmq::send_flags::none);
-    }
-  }
-  void request(std::uint64_t sequence, const std::string& body, std::uint64_t incarnation = 1) {
-    send_frames({encode(header(sequence, incarnation)), bytes_of(body)});
-  }
-  static Header header(std::uint64_t sequence, std::uint64_t incarnation = 1) {
-    Header result;
-    result.run_id = kRun;
-    result.incarnation = incarnation;
-    result.sequence = sequence;
-    return result;
-  }
-  std::pair<Header, std::string> receive() {
-    zmq::message_t head, body;
-    if (!socket_.recv(head) || !socket_.recv(body)) throw std::runtime_error("no answer");
-    return {decode_header({static_cast<const std::byte*>(head.data()), head.size()}),
-            body.to_string()};
-  }
-
- private:
-  zmq::context_t context_;
-  zmq::socket_t socket_{context_, zmq::socket_type::dealer};
-};
-
-// A server without manners: sends to its only client what the test says.
-class RawServer {
- public:
-  explicit RawServer(const Address& address) {
-    socket_.set(zmq::sockopt::linger, 0);
-    socket_.set(zmq::sockopt::rcvtimeo, static_cast<int>(kSoon.count()));
-    socket_.bind(address);
-  }
-  // The next request's.
-  Header receive() {
-    zmq::message_t head, body;
-    if (!socket_.recv(route_) || !socket_.recv(head) || !socket_.recv(body)) {
-      throw std::runtime_error("no request");
-    }
-    return decode_header({static_cast<const std::byte*>(head.data()), head.size()});
-  }
-  void send_frames(const std::vector<Bytes>& frames) {
-    socket_.send(zmq::buffer(route_.data(), route_.size()), zmq::send_flags::sndmore);
-    for (std::size_t i = 0; i < frames.size(); ++i) {
-      socket_.send(zmq::buffer(frames[i]),
-                   i + 1 < frames.size() ? zmq::send_flags::sndmore : zmq::send_flags::none);
-    }
-  }
-
- private:
-  zmq::context_t context_;
-  zmq::socket_t socket_{context_, zmq::socket_type::router};
-  zmq::message_t route_;
-};
 
 TEST(Endpoint, ARequestIsAnswered) {
   const Address address = fresh_address();
@@ -222,56 +155,6 @@ TEST(Endpoint, RequestsAheadOfALostOneWaitForItsRepetition) {
     EXPECT_EQ(text_of(server.receive(kSoon)->body), std::to_string(sequence));
   }
 }
-
-// A link between a client and a server that loses and repeats messages, by chance.
-class FlakyLink {
- public:
-  FlakyLink(const Address& front, const Address& back) {
-    front_.set(zmq::sockopt::linger, 0);
-    back_.set(zmq::sockopt::linger, 0);
-    front_.bind(front);
-    back_.connect(back);
-  }
-  // Passes on what is there.
-  void pump() {
-    while (auto frames = take(front_)) {
-      route_ = frames->at(0).to_string();
-      frames->erase(frames->begin());
-      for (int i = copies(); i > 0; --i) put(back_, *frames);
-    }
-    while (auto frames = take(back_)) {
-      frames->insert(frames->begin(), zmq::message_t(route_));
-      for (int i = copies(); i > 0; --i) put(front_, *frames);
-    }
-  }
-
- private:
-  using Frames = std::vector<zmq::message_t>;
-  int copies() {
-    const double draw = random_unit(5, Purpose::kWireDelay, {draws_++});
-    return draw < 0.3 ? 0 : draw < 0.5 ? 2 : 1;
-  }
-  static std::optional<Frames> take(zmq::socket_t& socket) {
-    Frames frames;
-    do {
-      frames.emplace_back();
-      if (!socket.recv(frames.back(), zmq::recv_flags::dontwait)) return std::nullopt;
-    } while (frames.back().more());
-    return frames;
-  }
-  static void put(zmq::socket_t& socket, const Frames& frames) {
-    for (std::size_t i = 0; i < frames.size(); ++i) {
-      socket.send(zmq::buffer(frames[i].data(), frames[i].size()),
-                  i + 1 < frames.size() ? zmq::send_flags::sndmore : zmq::send_flags::none);
-    }
-  }
-
-  zmq::context_t context_;
-  zmq::socket_t front_{context_, zmq::socket_type::router};
-  zmq::socket_t back_{context_, zmq::socket_type::dealer};
-  std::string route_;
-  std::uint64_t draws_ = 0;
-};
 
 TEST(Endpoint, EachRequestIsCarriedOutOnceAndInOrderOverALinkThatLosesAndRepeats) {
   const Address front = fresh_address();
@@ -488,22 +371,30 @@ TEST(Endpoint, TimeThatAClientSpendsElsewhereIsNoSilence) {
 
 TEST(Endpoint, AServerThatMakesAClientWaitIsNotLost) {
   const Address address = fresh_address();
-  RawServer server(address);
+  // Moves with each look alone. Three looks later the request is sent again; until it is answered
+  // the client waits, in real time, for most of resend_after.
   ManualClock time;
-  Client client(address, "server", actor(0), {}, time.clock());
+  const Clock creeping = [&] {
+    time.advance(std::chrono::milliseconds(400));
+    return time.now();
+  };
+  const ClientLimits limits;
+  const TimePoint start = time.now();
+  RawServer server(address);
+  Client client(address, "server", actor(0), limits, creeping);
+  const std::jthread serving([&] {
+    for (int repetition = 0; repetition <= 150; ++repetition) {
+      Header header = server.receive();
+      EXPECT_EQ(header.sequence, 1U);
+      const bool last = repetition == 150;
+      header.kind = last ? MessageKind::kReply : MessageKind::kPending;
+      server.send_frames({encode(header), last ? bytes_of("at last") : Bytes{}});
+    }
+  });
   client.send({});
-  Header header;
-  for (int second = 0; second < 100; ++second) {
-    header = server.receive();
-    EXPECT_EQ(header.sequence, 1U);
-    header.kind = MessageKind::kPending;
-    server.send_frames({encode(header), {}});
-    time.advance(seconds(1));
-    ASSERT_FALSE(client.receive(Duration{5}));  // for the answer to have come
-  }
-  header.kind = MessageKind::kReply;
-  server.send_frames({encode(header), bytes_of("at last")});
-  EXPECT_EQ(text_of(client.receive(kSoon).value()), "at last");
+  const auto answer = client.receive(std::chrono::hours(1));
+  EXPECT_EQ(text_of(answer.value()), "at last");
+  EXPECT_GT(time.now() - start, 3 * limits.peer_timeout);
 }
 
 TEST(Endpoint, AnAddressInUseIsAFailure) {
