@@ -33,7 +33,6 @@ void evaluate(const RunConfig& config, const Networks& networks, const EvaluateT
   const PlannerPair& pair = planner_pair(task.planner);
   const auto bp = make_behaviour_planner(pair, config, networks);
   const auto mop = make_motion_planner(pair, config, networks);
-  std::filesystem::create_directories(directory.episodes());
   if (task.fcd) std::filesystem::create_directories(*task.fcd);
 
   Episode episode(config, world);

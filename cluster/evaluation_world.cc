@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <optional>
 
-#include "cluster/new_run.h"
 #include "proto/base/failure.h"
 #include "proto/config/config_values.h"
 #include "proto/config/run_config.h"
@@ -49,11 +48,13 @@ RunDirectory world_directory(const RunDirectory& run, const RunConfig& config,
   }
   // Somebody was stopped before it was complete.
   on_disk("remove", root, [&] { std::filesystem::remove_all(root); });
-  on_disk("create", root, [&] { std::filesystem::create_directories(root.parent_path()); });
-  NewRun made(root);
-  made.fill(config, to_toml(config), read_manifest(run));
+  const RunDirectory directory = RunDirectory::create(root);
+  FolderInTheMaking made(root);
+  scenarios::write_sumo_files(config, directory.network().parent_path());
+  write_file(directory.config(), to_toml(config));
+  write_manifest(directory, read_manifest(run));
   made.keep();
-  return made.directory();
+  return directory;
 }
 
 }  // namespace
@@ -82,7 +83,8 @@ EvaluationPlace evaluation_place(const std::filesystem::path& run, const Evaluat
     }
     place.directory = world_directory(trained, place.config, name);
   }
-  // An exported run has none.
+  // An exported run has neither.
+  place.directory.create_folders();
   if (!std::filesystem::exists(place.directory.network())) {
     scenarios::write_sumo_files(place.config, place.directory.network().parent_path());
   }

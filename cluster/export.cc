@@ -25,9 +25,11 @@ void export_run(const std::filesystem::path& run, const std::filesystem::path& t
   manifest.fingerprint = fingerprint(*checkpoint);
 
   const RunDirectory exported = RunDirectory::create(to);
+  FolderInTheMaking made(to);
   write_networks(exported, *networks);
   write_file(exported.config(), read_file(trained.config()));
   write_manifest(exported, manifest);
+  made.keep();
 }
 
 }  // namespace corridor::cluster

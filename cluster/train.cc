@@ -7,7 +7,6 @@
 #include "cluster/launch/local.h"
 #include "cluster/launch/plan.h"
 #include "cluster/launch/run_lock.h"
-#include "cluster/new_run.h"
 #include "cluster/watch/training_monitor.h"
 #include "proto/base/failure.h"
 #include "proto/base/json.h"
@@ -16,6 +15,7 @@
 #include "proto/config/run_config.h"
 #include "proto/run/checkpoints.h"
 #include "proto/run/fingerprint.h"
+#include "proto/run/manifest.h"
 #include "proto/run/metrics.h"
 #include "proto/run/networks.h"
 #include "proto/run/run_directory.h"
@@ -23,6 +23,7 @@
 #include "proto/system/clock.h"
 #include "proto/system/files.h"
 #include "proto/system/program.h"
+#include "scenarios/sumo_files.h"
 
 namespace corridor::cluster {
 namespace {
@@ -55,8 +56,10 @@ std::vector<std::string> clean_up(const RunDirectory& directory) {
   return Checkpoints(directory.checkpoints()).set_aside_damaged();
 }
 
-int supervise(const RunConfig& config, const RunDirectory& directory, std::uint64_t rounds_before,
+// As its config.toml says, which all processes read.
+int supervise(const RunDirectory& directory, std::uint64_t rounds_before,
               const std::string& program) {
+  const RunConfig config = load_run_config(directory.config());
   const Schedule schedule(config);
   const double start_s = monotonic_s();
   TrainingMonitor monitor(schedule, config.run.actors, directory, rounds_before, available_cores(),
@@ -115,19 +118,6 @@ RunConfig changed_config(const ResumeOptions& options, const RunDirectory& direc
   return config;
 }
 
-std::optional<Networks> networks_to_begin_with(const std::filesystem::path& from,
-                                               const RunConfig& config) {
-  if (from.empty()) {
-    if (config.schedule.mop_commands == MopCommands::kRandom) return std::nullopt;
-    throw Failure(
-        "schedule.mop_commands = \"learned\": there is no learned BP yet; begin with the networks "
-        "of a run, as in --from runs/paper");
-  }
-  const auto networks = newest_networks(RunDirectory::open(from), config);
-  if (!networks) throw Failure("{} has no networks yet: train it first", from.string());
-  return networks;
-}
-
 }  // namespace
 
 int train(const TrainOptions& options, const std::string& program) {
@@ -137,20 +127,32 @@ int train(const TrainOptions& options, const std::string& program) {
   overrides.insert(overrides.end(), options.settings.begin(), options.settings.end());
   const RunConfig config = load_run_config(options.scenario, overrides);
 
-  const std::optional<Networks> given = networks_to_begin_with(options.from, config);
+  if (options.from.empty() && config.schedule.mop_commands == MopCommands::kLearned) {
+    throw Failure(
+        "schedule.mop_commands = \"learned\": there is no learned BP yet; begin with the networks "
+        "of a run, as in --from runs/paper");
+  }
 
-  NewRun run(options.run);
-  const RunDirectory& directory = run.directory();
+  // Without its manifest, which comes last, the directory is no run.
+  const RunDirectory directory = RunDirectory::create(options.run);
+  FolderInTheMaking made(directory.root());
   const RunLock lock(directory);
-  if (given) write_networks(directory, *given);
+  if (!options.from.empty()) {
+    const RunDirectory trained = RunDirectory::open(options.from);
+    const auto networks = newest_networks(trained, config);
+    if (!networks) throw Failure("{} has no networks yet: train it first", options.from.string());
+    write_networks(directory, *networks);
+  }
+  scenarios::write_sumo_files(config, directory.network().parent_path());
   const std::string text = to_toml(config);
-  run.fill(config, text, describe_run(draw_run_id(), config.run.seed, options.scenario, text));
+  write_file(directory.config(), text);
+  write_manifest(directory, describe_run(draw_run_id(), config.run.seed, options.scenario, text));
   if (stop_requested()) return 128 + SIGINT;
-  run.keep();
+  made.keep();
 
   fmt::print("{}: {} actors, seed {}; logs in {}\n", directory.root().string(), config.run.actors,
              config.run.seed, (directory.root() / "log").string());
-  return supervise(config, directory, 0, program);
+  return supervise(directory, 0, program);
 }
 
 int resume(const ResumeOptions& options, const std::string& program) {
@@ -178,7 +180,7 @@ int resume(const ResumeOptions& options, const std::string& program) {
              rounds > 0 ? "goes on from the checkpoint of" : "no checkpoint yet, begins anew",
              position(schedule, rounds),
              grouped(static_cast<std::int64_t>(reached - rounds) * schedule.steps_per_round()));
-  return supervise(config, directory, rounds, program);
+  return supervise(directory, rounds, program);
 }
 
 }  // namespace corridor::cluster

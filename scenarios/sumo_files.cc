@@ -141,9 +141,7 @@ std::string configuration_xml(const SimulationSettings& simulation) {
 
 void write_sumo_files(const RunConfig& config, const fs::path& directory,
                       std::chrono::milliseconds netconvert_deadline) {
-  std::error_code error;
-  fs::create_directories(directory, error);
-  if (error) throw Failure("cannot create {}: {}", directory.string(), error.message());
+  create_folders(directory);
   const std::pair<const char*, std::string> files[] = {
       {"road.nod.xml", nodes_xml(config.road)},
       {"road.edg.xml", edges_xml(config.road)},
@@ -151,6 +149,7 @@ void write_sumo_files(const RunConfig& config, const fs::path& directory,
       {"road.sumocfg", configuration_xml(config.simulation)}};
   for (const auto& [name, text] : files) write_file(directory / name, text);
   run_netconvert(directory, netconvert_deadline);
+  sync_file(directory / kSumoNetworkFile);
 }
 
 }  // namespace corridor::scenarios

@@ -355,7 +355,8 @@ Json load_toml(const fs::path& file) {
 }
 
 RunConfig load_run_config(const fs::path& file, const std::vector<std::string>& overrides) {
-  return changed({}, load_document(file, {}), file.string(), overrides);
+  toml::value document = load_document(file, {});
+  return changed({}, std::move(document), file.string(), overrides);
 }
 
 RunConfig parse_run_config(const std::string& text, const std::string& name,

@@ -26,7 +26,8 @@ OrderedJson to_json(const RunManifest& manifest) {
 }
 
 void write_manifest(const RunDirectory& directory, const RunManifest& manifest) {
-  write_file(directory.manifest(), to_json(manifest).dump(2) + "\n");
+  const std::string text = to_json(manifest).dump(2) + "\n";
+  write_file(directory.manifest(), text);
 }
 
 RunManifest read_manifest(const RunDirectory& directory) {

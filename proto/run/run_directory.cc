@@ -8,32 +8,28 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void create_folders(const fs::path& root) {
-  for (const char* name : {"sumo", "log", "metrics", "checkpoints", "evaluation/episodes"}) {
-    fs::create_directories(root / name);
-  }
-}
+constexpr const char* kFolders[] = {"sumo", "log", "metrics", "checkpoints", "evaluation/episodes"};
 
 }  // namespace
 
 std::string actor_name(int index) { return fmt::format("actor-{}", index); }
 
 RunDirectory RunDirectory::create(const fs::path& root) {
-  on_disk("create", root, [&] {
-    if (fs::exists(root / "manifest.json")) {
-      throw Failure("{} exists already: continue it with `corridor resume`, or choose another name",
-                    root.string());
-    }
-    if (fs::exists(root)) {
-      throw Failure(
-          "{} exists already and is no run, or one that never began: remove it, or choose "
-          "another name",
-          root.string());
-    }
-    create_folders(root);
-    for (const fs::path& made : {root, parent_of(root)}) sync_directory(made);
-  });
-  return RunDirectory(root);
+  RunDirectory directory(root);
+  std::error_code ignored;
+  if (fs::exists(directory.manifest(), ignored)) {
+    throw Failure("{} exists already: continue it with `corridor resume`, or choose another name",
+                  root.string());
+  }
+  if (fs::exists(root, ignored)) {
+    throw Failure(
+        "{} exists already and is no run, or one that never began: remove it, or choose "
+        "another name",
+        root.string());
+  }
+  directory.create_folders();
+  for (const fs::path& made : {root, parent_of(root)}) sync_directory(made);
+  return directory;
 }
 
 RunDirectory RunDirectory::open(const fs::path& root) {
@@ -45,9 +41,10 @@ RunDirectory RunDirectory::open(const fs::path& root) {
                     file.filename().string());
     }
   }
-  on_disk("create folders in", root, [&] { create_folders(root); });
   return directory;
 }
+
+void RunDirectory::create_folders() const { corridor::create_folders(root_, kFolders); }
 
 void RunDirectory::remove_leftovers() const {
   on_disk("remove leftovers from", root_, [&] {

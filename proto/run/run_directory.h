@@ -36,9 +36,11 @@ class RunDirectory {
  public:
   // Throws Failure when it exists already (saying what to do) or cannot be created.
   static RunDirectory create(const std::filesystem::path& root);
-  // Creates those of its folders that are missing: version control keeps no empty ones. Throws
-  // Failure when it is missing or no run directory (no config.toml or manifest.json).
+  // Throws Failure when it is missing or no run directory (no config.toml or manifest.json).
   static RunDirectory open(const std::filesystem::path& root);
+
+  // Those of its folders that are missing: version control keeps no empty ones. Throws Failure.
+  void create_folders() const;
 
   // What processes that were killed left half-written. Nobody else may be using the directory
   // (cluster/launch/run_lock.h).

@@ -46,6 +46,15 @@ fs::path parent_of(const fs::path& file) {
   return file.has_parent_path() ? file.parent_path() : fs::path(".");
 }
 
+void create_folders(const fs::path& folder, std::span<const char* const> children) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  for (const char* child : children) {
+    if (!error) fs::create_directories(folder / child, error);
+  }
+  if (error) throw Failure("cannot create {}: {}", folder.string(), error.message());
+}
+
 void sync_file(const fs::path& file) { sync(file, 0); }
 void sync_directory(const fs::path& directory) { sync(directory, O_DIRECTORY); }
 
@@ -84,6 +93,11 @@ std::string read_file(const fs::path& file) {
 }
 
 Json read_json(const fs::path& file) { return parse_json(read_file(file), file.string()); }
+
+FolderInTheMaking::~FolderInTheMaking() {
+  std::error_code ignored;
+  if (!folder_.empty()) fs::remove_all(folder_, ignored);
+}
 
 bool is_leftover(const fs::path& file) {
   return file.filename().string().find(kTemporary) != std::string::npos;

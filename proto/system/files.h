@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -18,6 +19,9 @@ void write_file(const std::filesystem::path& file, std::string_view content);
 std::string read_file(const std::filesystem::path& file);
 // Throws Failure naming the file when missing or not JSON.
 Json read_json(const std::filesystem::path& file);
+// Creates the folder with its parents where they are missing, and these in it. Throws Failure.
+void create_folders(const std::filesystem::path& folder,
+                    std::span<const char* const> children = {});
 // Makes what another program wrote survive a power failure.
 void sync_file(const std::filesystem::path& file);
 // Makes a rename or a new name in the directory survive one.
@@ -31,6 +35,19 @@ void on_disk(const char* what, const std::filesystem::path& path, const Action& 
     throw Failure("cannot {} {}: {}", what, path.string(), error.code().message());
   }
 }
+
+// A folder that goes, with all in it, unless what is made there is kept.
+class FolderInTheMaking {
+ public:
+  explicit FolderInTheMaking(std::filesystem::path folder) : folder_(std::move(folder)) {}
+  ~FolderInTheMaking();
+  FolderInTheMaking(const FolderInTheMaking&) = delete;
+  FolderInTheMaking& operator=(const FolderInTheMaking&) = delete;
+  void keep() { folder_.clear(); }
+
+ private:
+  std::filesystem::path folder_;
+};
 
 // The folder that a file lies in: "." for a bare name.
 std::filesystem::path parent_of(const std::filesystem::path& file);

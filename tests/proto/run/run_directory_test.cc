@@ -2,11 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 
-#include <csignal>
-
-#include "proto/base/json.h"
 #include "proto/settings/settings.h"
 #include "proto/system/files.h"
 #include "proto/wire/connect.h"
@@ -19,74 +15,6 @@ namespace {
 namespace fs = std::filesystem;
 using testing::AllOf;
 using testing::HasSubstr;
-using testing::UnorderedElementsAre;
-
-std::vector<std::string> names_in(const fs::path& directory) {
-  std::vector<std::string> names;
-  for (const auto& entry : fs::directory_iterator(directory)) {
-    names.push_back(entry.path().filename().string());
-  }
-  return names;
-}
-
-class Files : public testing::Test {
- protected:
-  testing_support::TemporaryDirectory directory_;
-  fs::path file_ = directory_.path() / "file";
-};
-
-TEST_F(Files, AreWrittenWholeAndReadBack) {
-  const std::string content = std::string("a\0b\n", 4) + std::string(1'000'000, 'x');
-  write_file(file_, content);
-  EXPECT_EQ(read_file(file_), content);
-  write_file(file_, "");
-  EXPECT_EQ(read_file(file_), "");
-  EXPECT_THAT(names_in(directory_.path()), UnorderedElementsAre("file"));
-}
-
-TEST_F(Files, ThatCannotBeWrittenAreNamedWithTheReason) {
-  EXPECT_THAT(failure_of([] { write_file("/nowhere/at/all", "x"); }),
-              AllOf(HasSubstr("/nowhere/at/all"), HasSubstr("No such file")));
-  fs::create_directory(file_);
-  write_file(file_ / "inside", "x");
-  EXPECT_THAT(failure_of([&] { write_file(file_, "x"); }), HasSubstr("directory"));
-  EXPECT_THAT(names_in(directory_.path()), UnorderedElementsAre("file"));
-}
-
-// Writes with a limit on file sizes, which fails in the middle of a file as a full disk does.
-[[noreturn]] void write_beyond_the_limit(const fs::path& file) {
-  std::signal(SIGXFSZ, SIG_IGN);
-  const rlimit limit{1000, 1000};
-  setrlimit(RLIMIT_FSIZE, &limit);
-  const std::string failure = failure_of([&] { write_file(file, std::string(5000, 'n')); });
-  std::fprintf(stderr, "%s\n", failure.c_str());
-  std::exit(failure == "no failure" ? 1 : 0);
-}
-
-TEST_F(Files, AFullDiskLeavesTheOldFileAndNothingBesideIt) {
-  write_file(file_, "old");
-  EXPECT_EXIT(write_beyond_the_limit(file_), testing::ExitedWithCode(0), "File too large");
-  EXPECT_EQ(read_file(file_), "old");
-  EXPECT_THAT(names_in(directory_.path()), UnorderedElementsAre("file"));
-}
-
-TEST_F(Files, ThatCannotBeReadAreNamedWithTheReason) {
-  EXPECT_THAT(failure_of([&] { read_file(file_); }),
-              AllOf(HasSubstr(file_.string()), HasSubstr("No such file")));
-  EXPECT_THAT(failure_of([&] { read_file(directory_.path()); }), HasSubstr("Is a directory"));
-}
-
-TEST_F(Files, OfUnknownSizeAreReadToTheEnd) {
-  EXPECT_THAT(read_file("/proc/self/status"), HasSubstr("VmRSS"));
-}
-
-TEST_F(Files, ThatAreNoJsonAreNamed) {
-  write_file(file_, "{\"a\": 1}");
-  EXPECT_EQ(read_json(file_).at("a"), 1);
-  write_file(file_, "{\"a\": ");
-  EXPECT_THAT(failure_of([&] { read_json(file_); }),
-              AllOf(HasSubstr(file_.string()), HasSubstr("is not JSON")));
-}
 
 class Runs : public testing::Test {
  protected:
@@ -121,6 +49,19 @@ TEST_F(Runs, NeedAConfigAndAManifestToBeOpened) {
               HasSubstr("manifest.json is missing"));
   write_file(run.manifest(), "{}");
   EXPECT_EQ(RunDirectory::open(root_).root(), root_);
+}
+
+// People look at what is installed where they may not write.
+TEST_F(Runs, AreOpenedWithoutAChangeAndGetTheFoldersTheyLackWhenAsked) {
+  const RunDirectory run = create();
+  write_file(run.config(), "");
+  write_file(run.manifest(), "{}");
+  const fs::path logs = run.log("learner").parent_path();
+  fs::remove(logs);
+  const RunDirectory opened = RunDirectory::open(root_);
+  EXPECT_FALSE(fs::exists(logs));
+  opened.create_folders();
+  EXPECT_TRUE(fs::is_directory(logs));
 }
 
 TEST(Addresses, OfTcpAreTheConfiguredPorts) {
