@@ -2,7 +2,6 @@
 
 #include <cstdlib>
 #include <sstream>
-#include <system_error>
 #include <vector>
 
 #include "proto/base/failure.h"
@@ -60,23 +59,21 @@ void run_netconvert(const fs::path& directory, std::chrono::milliseconds patienc
   }
 }
 
-}  // namespace
-
 std::string nodes_xml(const RoadSettings& road) {
   return fmt::format(
-      "{}<nodes>\n"
+      "<nodes>\n"
       "  <node id=\"west\" x=\"0\" y=\"0\"/>\n"
       "  <node id=\"east\" x=\"{}\" y=\"0\"/>\n"
       "</nodes>\n",
-      kHeader, road.length_m);
+      road.length_m);
 }
 
 std::string edges_xml(const RoadSettings& road) {
   return fmt::format(
-      "{}<edges>\n"
+      "<edges>\n"
       "  <edge id=\"{}\" from=\"west\" to=\"east\" numLanes=\"{}\" width=\"{}\" speed=\"{}\"/>\n"
       "</edges>\n",
-      kHeader, kSumoRoad, road.lanes, road.lane_width_m, road.speed_limit_mps);
+      kSumoRoad, road.lanes, road.lane_width_m, road.speed_limit_mps);
 }
 
 // So little of the ego that a vehicle in the intruded lane's other half is not in its way.
@@ -97,7 +94,7 @@ std::string vehicle_types_xml(const TrafficSettings& traffic, const EgoSettings&
                   traffic.truck_speed_factor)};
   static_assert(std::size(kinds) == kVehicleKinds.size());
 
-  std::string xml = std::string(kHeader) + "<routes>\n";
+  std::string xml = "<routes>\n";
   xml += vehicle_type_xml(
       kEgoType, fmt::format("speedFactor=\"1\" speedDev=\"0\" length=\"{}\" width=\"{}\" "
                             "accel=\"{}\" {} color=\"red\"",
@@ -122,7 +119,7 @@ std::string vehicle_types_xml(const TrafficSettings& traffic, const EgoSettings&
 
 std::string configuration_xml(const SimulationSettings& simulation) {
   return fmt::format(
-      "{}<configuration>\n"
+      "<configuration>\n"
       "  <input>\n"
       "    <net-file value=\"{}\"/>\n"
       "    <route-files value=\"{}\"/>\n"
@@ -135,9 +132,10 @@ std::string configuration_xml(const SimulationSettings& simulation) {
       "    <collision.mingap-factor value=\"0\"/>\n"
       "  </processing>\n"
       "</configuration>\n",
-      kHeader, kSumoNetworkFile, kSumoRoutesFile, simulation.substep_s(),
-      simulation.lateral_resolution_m);
+      kSumoNetworkFile, kSumoRoutesFile, simulation.substep_s(), simulation.lateral_resolution_m);
 }
+
+}  // namespace
 
 void write_sumo_files(const RunConfig& config, const fs::path& directory,
                       std::chrono::milliseconds netconvert_deadline) {
@@ -147,7 +145,7 @@ void write_sumo_files(const RunConfig& config, const fs::path& directory,
       {"road.edg.xml", edges_xml(config.road)},
       {kSumoRoutesFile, vehicle_types_xml(config.traffic, config.ego)},
       {"road.sumocfg", configuration_xml(config.simulation)}};
-  for (const auto& [name, text] : files) write_file(directory / name, text);
+  for (const auto& [name, text] : files) write_file(directory / name, kHeader + text);
   run_netconvert(directory, netconvert_deadline);
   sync_file(directory / kSumoNetworkFile);
 }

@@ -7,17 +7,10 @@
 
 #include <chrono>
 #include <filesystem>
-#include <string>
 
 #include "proto/settings/settings.h"
 
 namespace corridor::scenarios {
-
-// The contents of the files. Pure.
-std::string nodes_xml(const RoadSettings& road);
-std::string edges_xml(const RoadSettings& road);
-std::string vehicle_types_xml(const TrafficSettings& traffic, const EgoSettings& ego);
-std::string configuration_xml(const SimulationSettings& simulation);
 
 // Writes road.nod.xml, road.edg.xml, traffic.rou.xml and road.sumocfg into `directory` (created
 // when missing), and has `netconvert` make road.net.xml from the first two. netconvert is looked

@@ -82,7 +82,8 @@ TEST_F(SumoFiles, GiveANetworkWithTheLanesSet) {
 }
 
 TEST_F(SumoFiles, DescribeEveryKindWithEveryAlignment) {
-  TrafficSettings traffic;
+  RunConfig config;
+  TrafficSettings& traffic = config.traffic;
   traffic.speed_factor_mean = 0.7;
   traffic.speed_factor_deviation = 0.1;
   traffic.speed_factor_min = 0.5;
@@ -90,9 +91,9 @@ TEST_F(SumoFiles, DescribeEveryKindWithEveryAlignment) {
   traffic.keep_right = 0.0;
   traffic.object_length_m = 2.5;
   traffic.object_width_m = 0.5;
-  EgoSettings ego;
-  ego.length_m = 4.5;
-  const std::string xml = vehicle_types_xml(traffic, ego);
+  config.ego.length_m = 4.5;
+  write_sumo_files(config, directory_);
+  const std::string xml = read_file(directory_ / kSumoRoutesFile);
   for (const char* kind : kVehicleKinds) {
     for (const char* alignment : kAlignments) {
       EXPECT_THAT(xml, HasSubstr(fmt::format("<vType id=\"{}_{}\"", kind, alignment)));
