@@ -48,8 +48,6 @@ std::string phase_line(const RunConfig& config, const Schedule& schedule, Phase 
       shape.actions, grouped(dqn.capacity), memory_mib);
 }
 
-}  // namespace
-
 std::string summary(const RunConfig& config) {
   const Schedule schedule(config);
   const RoadSettings& road = config.road;
@@ -73,6 +71,8 @@ std::string summary(const RunConfig& config) {
                      grouped(config.evaluation.steps), config.evaluation.seeds.size(),
                      config.evaluation.seeds.size() == 1 ? "" : "s");
 }
+
+}  // namespace
 
 int check(const std::filesystem::path& scenario) {
   const RunConfig config = load_run_config(scenario);

@@ -9,7 +9,6 @@
 #include "cluster/experiment.h"
 #include "cluster/export.h"
 #include "cluster/hindsight.h"
-#include "cluster/launch/plan.h"
 #include "cluster/report/report.h"
 #include "cluster/train.h"
 #include "proto/base/failure.h"
@@ -59,7 +58,7 @@ void declare_run(CLI::App& app, std::filesystem::path& run) {
   app.add_option("DIR", run, "run directory")->required();
 }
 
-// The world to drive in, in `into` once `settle_world` was called.
+// The world to drive in.
 void declare_world(CLI::App& app, Arguments& arguments, EvaluationWorld& into) {
   app.add_option("--scenario", into.scenario,
                  "drive in this scenario's world (TOML); the run's own unless given");
@@ -69,13 +68,10 @@ void declare_world(CLI::App& app, Arguments& arguments, EvaluationWorld& into) {
   }
   app.add_option("--world", arguments.world, worlds);
   declare_settings(app, into.settings);
-}
-
-EvaluationWorld settle_world(const Arguments& arguments, EvaluationWorld world) {
-  if (!arguments.world.empty()) {
-    world.settings.insert(world.settings.begin(), "dynamics.world=" + arguments.world);
-  }
-  return world;
+  app.callback([&arguments, &into] {
+    if (arguments.world.empty()) return;
+    into.settings.insert(into.settings.begin(), "dynamics.world=" + arguments.world);
+  });
 }
 
 void declare_drive(CLI::App& app, Arguments& arguments) {
@@ -175,23 +171,13 @@ const Command kCommands[] = {
      "  corridor evaluate runs/first --world slip --set dynamics.friction=0.5\n"
      "  corridor evaluate runs/first --planners hierarchical,sumo --seeds 1002,1003 --json "
      "out.json",
-     declare_evaluate,
-     [](const Arguments& a) {
-       EvaluateOptions options = a.evaluate;
-       options.world = settle_world(a, options.world);
-       return evaluate(options);
-     }},
+     declare_evaluate, [](const Arguments& a) { return evaluate(a.evaluate); }},
     {"drive", "Drive an episode and show it: a film, a contact sheet and a player",
      "corridor drive runs/first --seed 1002\n"
      "  corridor drive runs/first --scenario scenarios/paper_substeps.toml --world slip\n"
      "  corridor drive runs/first --episode hierarchical_1002_3 --from 100 --seconds 20\n"
      "  corridor drive runs/first --planner rules --collisions",
-     declare_drive,
-     [](const Arguments& a) {
-       DriveOptions options = a.drive;
-       options.world = settle_world(a, options.world);
-       return drive(options);
-     }},
+     declare_drive, [](const Arguments& a) { return drive(a.drive); }},
     {"experiment", "Train and evaluate everything that an experiment file names, and go on with it",
      "corridor experiment scenarios/experiments/reduced.toml --run runs/reduced",
      [](CLI::App& app, Arguments& a) {

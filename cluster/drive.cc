@@ -24,6 +24,7 @@ namespace fs = std::filesystem;
 constexpr double kBeforeCollision_s = 8.0;
 
 constexpr std::chrono::minutes kPatience{10};
+constexpr double kLongest_s = 1e6;
 
 EpisodeTrace recorded(const EvaluationPlace& place, const fs::path& file) {
   return traced_by_actor(place.directory, TraceTask{file, place.trained.root()}, kPatience);
@@ -61,7 +62,9 @@ std::vector<Clip> collisions(const EvaluationPlace& place, const DriveOptions& o
 }  // namespace
 
 int drive(const DriveOptions& options) {
-  if (!(options.seconds > 0.0) || !(options.interval_s > 0.0) || !(options.from_s >= 0.0)) {
+  const auto positive = [](double time_s) { return time_s > 0.0 && time_s <= kLongest_s; };
+  if (!positive(options.seconds) || !positive(options.interval_s) ||
+      !(options.from_s >= 0.0 && options.from_s <= kLongest_s)) {
     throw Failure("--from {} --seconds {} --interval {}: give a stretch of time", options.from_s,
                   options.seconds, options.interval_s);
   }

@@ -9,7 +9,6 @@
 #include "cluster/launch/local.h"
 #include "cluster/launch/plan.h"
 #include "cluster/results/results_tables.h"
-#include "cluster/watch/line_tail.h"
 #include "cluster/watch/step_progress.h"
 #include "proto/base/failure.h"
 #include "proto/base/json.h"
@@ -43,7 +42,7 @@ void check_can_write(const std::filesystem::path& file) {
 
 }  // namespace
 
-std::vector<EvaluationJob> chosen_jobs(std::vector<std::string> planners,
+std::vector<EvaluateTask> chosen_tasks(std::vector<std::string> planners,
                                        std::vector<std::uint64_t> seeds, std::int64_t steps,
                                        const RunConfig& config) {
   if (planners.empty()) {
@@ -55,7 +54,7 @@ std::vector<EvaluationJob> chosen_jobs(std::vector<std::string> planners,
   for (const std::string& planner : planners) planner_pair(planner);
   refuse_repeated(planners, "planner");
   refuse_repeated(seeds, "evaluation seed");
-  return evaluation_jobs(planners, seeds, steps);
+  return evaluation_tasks(planners, seeds, steps);
 }
 
 int parallel_jobs(std::optional<int> jobs) {
@@ -69,34 +68,37 @@ int evaluate(const EvaluateOptions& options) {
   const auto& [trained, directory, config] = place;
   const std::int64_t steps = options.steps.value_or(config.evaluation.steps);
   if (steps < 1) throw Failure("--steps {}: at least 1 is needed", steps);
-  const std::vector<EvaluationJob> jobs =
-      chosen_jobs(options.planners, options.seeds, steps, config);
-  for (const EvaluationJob& job : jobs) check_can_drive(job.planner, place);
+  const std::vector<EvaluateTask> tasks =
+      chosen_tasks(options.planners, options.seeds, steps, config);
+  for (const EvaluateTask& task : tasks) check_can_drive(task.planner, place);
   const int parallel = parallel_jobs(options.jobs);
   if (!options.json.empty()) check_can_write(options.json);
 
   std::vector<ProcessPlan> plan;
-  std::vector<StepTask> tasks;
-  for (const EvaluationJob& job : jobs) {
-    plan.push_back(evaluation_process(job, directory, trained, program_directory(), options.fcd));
-    tasks.push_back({fmt::format("{} {}", job.planner, job.seed), job.steps, 0, plan.back().log,
+  std::vector<StepTask> shown;
+  for (EvaluateTask task : tasks) {
+    if (!options.world.is_own()) task.networks = trained.root();
+    if (!options.fcd.empty()) task.fcd = options.fcd;
+    plan.push_back(
+        actor_process(fmt::format("evaluate-{}-{}", task.planner, task.seed), task, directory));
+    shown.push_back({fmt::format("{} {}", task.planner, task.seed), steps, 0, plan.back().log,
                      parse_step_count});
   }
-  StepProgress progress("evaluation", std::move(tasks), monotonic_s());
-  const Ending ending = run_queue(plan, parallel, Limits{}, [&] { progress.tick(monotonic_s()); });
-  if (ending.signal != 0) {
+  StepProgress progress("evaluation", std::move(shown), monotonic_s());
+  const int signal = run_queue(plan, parallel, Limits{}, [&] { progress.tick(monotonic_s()); });
+  if (signal != 0) {
     fmt::print("stopped: no table\n");
-    return 128 + ending.signal;
+    return 128 + signal;
   }
 
   std::vector<EvaluationRecord> results;
   std::vector<SeedResult> of_this_run;
-  for (const EvaluationJob& job : jobs) {
-    results.push_back(read_evaluation(directory.evaluation(job.name())));
+  for (const EvaluateTask& task : tasks) {
+    results.push_back(read_evaluation(directory.evaluation({task.planner, task.seed})));
     of_this_run.push_back({config.run.seed, results.back()});
   }
   fmt::print("\n{}: {} steps for each planner and seed\n", directory.root().string(),
-             grouped(jobs.front().steps));
+             grouped(steps));
   for (const Table& table : results_tables(arms_of(of_this_run))) {
     fmt::print("\n{}", text_of(table));
   }
@@ -113,16 +115,13 @@ int evaluate(const EvaluateOptions& options) {
 
 void redrive(const std::filesystem::path& run, const std::string& episode) {
   const RunDirectory directory = RunDirectory::open(run);
-  const std::filesystem::path program = program_directory() / kActorProgram;
-  std::vector<std::string> texts =
-      argv_of(RedriveTask{find_episode(directory, episode)}, directory);
-  texts.insert(texts.begin(), program.string());
+  ProcessPlan actor =
+      actor_process("redrive", RedriveTask{find_episode(directory, episode)}, directory);
   std::vector<char*> argv;
-  for (std::string& text : texts) argv.push_back(text.data());
+  for (std::string& text : actor.argv) argv.push_back(text.data());
   argv.push_back(nullptr);
-  execv(program.c_str(), argv.data());
-  throw Failure("cannot start {}: {}; is the build complete?", program.string(),
-                std::strerror(errno));
+  execv(argv[0], argv.data());
+  throw Failure("cannot start {}: {}; is the build complete?", argv[0], std::strerror(errno));
 }
 
 }  // namespace corridor::cluster

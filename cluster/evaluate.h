@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "cluster/evaluation_world.h"
-#include "cluster/launch/plan.h"
+#include "proto/run/actor_task.h"
 #include "proto/settings/settings.h"
 
 namespace corridor::cluster {
@@ -17,12 +17,11 @@ struct EvaluateOptions {
   std::filesystem::path run = {};
   EvaluationWorld world = {};              // with neither: the run's own, in its own directory
   std::vector<std::string> planners = {};  // empty: all
-  std::optional<std::int64_t> steps =
-      {};                                 // for each planner and seed = {}; else [evaluation] steps
-  std::vector<std::uint64_t> seeds = {};  // empty: [evaluation] seeds
-  std::optional<int> jobs = {};           // processes at a time = {}; else the number of cores
-  std::filesystem::path json = {};        // empty: none
-  std::filesystem::path fcd = {};         // directory of SUMO's trajectories = {}; empty: none
+  std::optional<std::int64_t> steps = {};  // for each planner and seed; else [evaluation] steps
+  std::vector<std::uint64_t> seeds = {};   // empty: [evaluation] seeds
+  std::optional<int> jobs = {};            // processes at a time; else the number of cores
+  std::filesystem::path json = {};         // empty: none
+  std::filesystem::path fcd = {};          // directory of SUMO's trajectories; empty: none
 };
 
 // Drives each planner on the test episodes of each seed and prints the table. Returns the exit
@@ -33,7 +32,7 @@ int evaluate(const EvaluateOptions& options);
 // Every planner with every seed: those chosen or, where none are, the pairs evaluated by default
 // and [evaluation] seeds. Throws Failure for planners that there are not, and for what is given
 // twice.
-std::vector<EvaluationJob> chosen_jobs(std::vector<std::string> planners,
+std::vector<EvaluateTask> chosen_tasks(std::vector<std::string> planners,
                                        std::vector<std::uint64_t> seeds, std::int64_t steps,
                                        const RunConfig& config);
 

@@ -4,12 +4,11 @@
 #include <vector>
 
 #include "cluster/evaluate.h"
-#include "cluster/experiment_plan.h"
+#include "cluster/experiment_file.h"
 #include "cluster/launch/describe_run.h"
 #include "cluster/launch/local.h"
 #include "cluster/launch/plan.h"
 #include "cluster/results/results_tables.h"
-#include "cluster/watch/line_tail.h"
 #include "cluster/watch/step_progress.h"
 #include "proto/base/failure.h"
 #include "proto/base/json.h"
@@ -20,7 +19,6 @@
 #include "proto/run/fingerprint.h"
 #include "proto/run/metrics.h"
 #include "proto/run/run_directory.h"
-#include "proto/settings/planner_pairs.h"
 #include "proto/settings/schedule.h"
 #include "proto/system/clock.h"
 #include "proto/system/files.h"
@@ -37,9 +35,7 @@ struct Evaluation {
   const TrainingRun* run = nullptr;
   std::string world;   // its name
   RunDirectory place;  // of that scenario
-  EvaluationJob job;
-
-  fs::path file() const { return place.evaluation(job.name()); }
+  EvaluateTask task;
 };
 
 // Of runs that have been trained.
@@ -49,8 +45,8 @@ std::vector<Evaluation> evaluations_of(const Experiment& experiment,
   for (const TrainingRun& run : runs) {
     for (const EvaluationWorld& world : run.training->evaluate_in) {
       const EvaluationPlace place = evaluation_place(run.root, world);
-      for (EvaluationJob& job : jobs_of(run, experiment, place.config.dynamics.world)) {
-        evaluations.push_back({&run, world.name(""), place.directory, std::move(job)});
+      for (EvaluateTask& task : tasks_of(run, experiment, place.config.dynamics.world)) {
+        evaluations.push_back({&run, world.name(""), place.directory, std::move(task)});
       }
     }
   }
@@ -85,7 +81,7 @@ void check_same_settings(const TrainingRun& run) {
 }
 
 ProcessPlan training_process(const TrainingRun& run, const fs::path& log) {
-  const std::string program = program_directory() / "corridor";
+  const std::string program = program_path("corridor");
   if (has_begun(run)) return {run.name(), {program, "resume", run.root.string()}, log};
   // Whoever began it was killed before it was a run.
   on_disk("remove", run.root, [&] { fs::remove_all(run.root); });
@@ -118,37 +114,28 @@ int train_all(const std::vector<TrainingRun>& runs, const fs::path& directory, i
   limits.others = Milliseconds(10'000);  // each of them ends processes of its own
   StepProgress progress("training", std::move(tasks), monotonic_s());
   for (const auto& queue : {plan, later}) {
-    const Ending ending = run_queue(queue, std::max(1, cores / kCoresPerTraining), limits,
-                                    [&] { progress.tick(monotonic_s()); });
-    if (ending.signal != 0) return ending.signal;
+    const int signal = run_queue(queue, std::max(1, cores / kCoresPerTraining), limits,
+                                 [&] { progress.tick(monotonic_s()); });
+    if (signal != 0) return signal;
   }
   return 0;
-}
-
-bool is_done(const Evaluation& evaluation) {
-  const fs::path file = evaluation.file();
-  return fs::exists(file) && read_evaluation(file).steps == evaluation.job.steps;
 }
 
 int evaluate_all(const std::vector<Evaluation>& evaluations, const fs::path& directory, int cores) {
   std::vector<ProcessPlan> plan;
   std::vector<StepTask> tasks;
-  for (const Evaluation& evaluation : evaluations) {
-    const EvaluationJob& job = evaluation.job;
-    const std::string name =
-        fmt::format("{}-{}-{}-{}", evaluation.run->name(), evaluation.world, job.planner, job.seed);
-    const fs::path log = directory / "log" / (name + ".log");
-    const bool done = is_done(evaluation);
-    tasks.push_back({name, job.steps, done ? job.steps : 0, log, parse_step_count});
-    if (done) continue;
-    ProcessPlan process = evaluation_process(
-        job, evaluation.place, RunDirectory::open(evaluation.run->root), program_directory(), {});
-    process.name = name;
-    process.log = log;
-    plan.push_back(std::move(process));
+  for (const auto& [run, world, place, task] : evaluations) {
+    ProcessPlan process = actor_process(
+        fmt::format("{}-{}-{}-{}", run->name(), world, task.planner, task.seed), task, place);
+    process.log = directory / "log" / (process.name + ".log");
+    const fs::path file = place.evaluation({task.planner, task.seed});
+    const bool done = fs::exists(file) && read_evaluation(file).steps == task.steps;
+    tasks.push_back(
+        {process.name, task.steps, done ? task.steps : 0, process.log, parse_step_count});
+    if (!done) plan.push_back(std::move(process));
   }
   StepProgress progress("evaluation", std::move(tasks), monotonic_s());
-  return run_queue(plan, cores, Limits{}, [&] { progress.tick(monotonic_s()); }).signal;
+  return run_queue(plan, cores, Limits{}, [&] { progress.tick(monotonic_s()); });
 }
 
 // All results of one training in one scenario.
@@ -157,7 +144,8 @@ std::vector<SeedResult> results_in(const std::vector<Evaluation>& evaluations,
   std::vector<SeedResult> results;
   for (const Evaluation& evaluation : evaluations) {
     if (evaluation.run->training != &training || evaluation.world != world) continue;
-    results.push_back({evaluation.run->seed, read_evaluation(evaluation.file())});
+    const auto file = evaluation.place.evaluation({evaluation.task.planner, evaluation.task.seed});
+    results.push_back({evaluation.run->seed, read_evaluation(file)});
   }
   return results;
 }

@@ -1,4 +1,5 @@
-// What an experiment is made of: a TOML file beside the scenarios.
+// What an experiment is made of, a TOML file beside the scenarios, and what is trained and
+// evaluated for it, by which commands.
 //
 //   planners = ["hierarchical", "rules"]    # arms (proto/settings/planner_pairs.h)
 //   training_seeds = [1, 2, 3, 4, 5]
@@ -20,6 +21,8 @@
 #include <vector>
 
 #include "cluster/evaluation_world.h"
+#include "proto/run/actor_task.h"
+#include "proto/settings/settings.h"
 
 namespace corridor::cluster {
 
@@ -43,5 +46,29 @@ struct Experiment {
 // an empty list, anything given twice, planners and scenarios that there are not, settings that
 // contradict each other.
 Experiment load_experiment(const std::filesystem::path& file);
+
+// One seed of one training.
+struct TrainingRun {
+  const TrainingArm* training = nullptr;  // in the Experiment, which outlives this
+  std::uint64_t seed = 0;
+  std::filesystem::path root;
+  RunConfig config;
+
+  std::string name() const;  // "paper-1"
+};
+
+// Every seed of every training, in the experiment's `directory`. Throws Failure for a wrong
+// scenario.
+std::vector<TrainingRun> runs_of(const Experiment& experiment,
+                                 const std::filesystem::path& directory);
+
+// `corridor train`, of a run that is not there yet; one that begins with another's networks does so
+// with those of its own seed.
+std::vector<std::string> train_command(const TrainingRun& run, const std::string& program);
+
+// What a run's planners are evaluated on in such a world: those that learn nothing beside the first
+// seed only, SUMO's driver only where it can drive.
+std::vector<EvaluateTask> tasks_of(const TrainingRun& run, const Experiment& experiment,
+                                   WorldKind world);
 
 }  // namespace corridor::cluster

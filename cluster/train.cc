@@ -82,15 +82,15 @@ int supervise(const RunDirectory& directory, std::uint64_t rounds_before,
                                  rounds > 0 ? "the checkpoint of " + position(schedule, rounds)
                                             : std::string("the beginning")));
   };
-  const Ending ending = run_together(training_plan(config.run, directory, program_directory()),
-                                     kLearnerName, limits, supervision);
+  const int signal =
+      run_together(training_plan(config.run, directory), kLearnerName, limits, supervision);
   monitor.tick(monotonic_s());
 
   const std::uint64_t rounds = rounds_done(directory);
-  if (ending.signal != 0) {
+  if (signal != 0) {
     fmt::print("stopped at the checkpoint of {}; resume with {} resume {}\n",
                position(schedule, rounds), program, directory.root().string());
-    return 128 + ending.signal;
+    return 128 + signal;
   }
   CORRIDOR_CHECK(rounds == schedule.rounds(), "{} of {}", rounds, schedule.rounds());
   fmt::print("training is complete after {}: {}\n", duration_text(monotonic_s() - start_s),
@@ -136,7 +136,7 @@ int train(const TrainOptions& options, const std::string& program) {
   // Without its manifest, which comes last, the directory is no run.
   const RunDirectory directory = RunDirectory::create(options.run);
   FolderInTheMaking made(directory.root());
-  const RunLock lock(directory);
+  const Descriptor lock = lock_run(directory);
   if (!options.from.empty()) {
     const RunDirectory trained = RunDirectory::open(options.from);
     const auto networks = newest_networks(trained, config);
@@ -161,7 +161,7 @@ int resume(const ResumeOptions& options, const std::string& program) {
     throw Failure("{} is an exported run: train one with --from {} instead", options.run.string(),
                   options.run.string());
   }
-  const RunLock lock(directory);
+  const Descriptor lock = lock_run(directory);
   const RunConfig config = changed_config(options, directory);
   for (const std::string& line : clean_up(directory)) {
     fmt::print("{}; the checkpoint before it is used\n", line);

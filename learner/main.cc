@@ -75,8 +75,8 @@ int main(int argc, char** argv) {
   CLI::App app("The learner of a corridor run; `corridor` starts it.");
   std::string root;
   app.add_option("RUN_DIRECTORY", root, "the run, as `corridor train` made it")->required();
-  return run_program("corridor-learner", [&] {
-    const auto done = parse_command_line(app, "corridor-learner", argc, argv);
+  return run_program(kLearnerProgram, [&] {
+    const auto done = parse_command_line(app, kLearnerProgram, argc, argv);
     return done ? *done : run(root);
   });
 }

@@ -40,8 +40,8 @@ int main(int argc, char** argv) {
   CLI::App app("Prioritized replay server of a corridor run; `corridor` starts it.");
   std::string root;
   app.add_option("RUN_DIRECTORY", root, "the run, as `corridor train` made it")->required();
-  return corridor::run_program("corridor-replay", [&] {
-    const auto done = corridor::parse_command_line(app, "corridor-replay", argc, argv);
+  return corridor::run_program(corridor::kReplayProgram, [&] {
+    const auto done = corridor::parse_command_line(app, corridor::kReplayProgram, argc, argv);
     return done ? *done : run(root);
   });
 }

@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "proto/base/failure.h"
+#include "proto/system/descriptor.h"
 #include "proto/system/identity.h"
 
 namespace corridor::cluster {
@@ -87,31 +88,29 @@ void Children::start(const ProcessPlan& plan, std::chrono::milliseconds patience
   const std::vector<char*> argv = pointers(arguments);
   const std::vector<char*> envp = pointers(environment);
 
-  const int log = open(plan.log.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
-  if (log < 0) throw Failure("cannot write {}: {}", plan.log.string(), std::strerror(errno));
-  const off_t log_start = lseek(log, 0, SEEK_END);
+  const Descriptor log(open(plan.log.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644));
+  if (!log.valid()) throw Failure("cannot write {}: {}", plan.log.string(), std::strerror(errno));
+  const off_t log_start = lseek(log.get(), 0, SEEK_END);
   // Closed by a successful exec, so that its failure is known here, with the reason.
-  int errors[2];
-  if (pipe2(errors, O_CLOEXEC) != 0) {
-    const int error = errno;
-    close(log);
-    throw Failure("cannot start {}: {}", plan.name, std::strerror(error));
+  int ends[2];
+  if (pipe2(ends, O_CLOEXEC) != 0) {
+    throw Failure("cannot start {}: {}", plan.name, std::strerror(errno));
   }
+  const Descriptor errors(ends[0]);
+  Descriptor told(ends[1]);
   const pid_t parent = getpid();
   const pid_t pid = fork();
-  if (pid == 0) become(argv.data(), envp.data(), log, errors[1], pulse.descriptor(), parent);
+  if (pid == 0) become(argv.data(), envp.data(), log.get(), told.get(), pulse.descriptor(), parent);
   int error = pid < 0 ? errno : 0;
-  close(log);
-  close(errors[1]);
+  told.close();
   if (pid > 0) {
     setpgid(pid, pid);  // here as well: whoever comes first
     running_.push_back({plan.name, plan.log, static_cast<std::uintmax_t>(log_start), pid,
                         std::move(pulse), 0, std::nullopt, false});
-    pollfd said{errors[0], POLLIN, 0};
+    pollfd said{errors.get(), POLLIN, 0};
     const bool over = poll(&said, 1, static_cast<int>(patience.count())) > 0;
-    if (over && read(errors[0], &error, sizeof error) < 0) error = errno;
+    if (over && read(errors.get(), &error, sizeof error) < 0) error = errno;
   }
-  close(errors[0]);
   if (error != 0) {
     throw Failure("cannot start {}: {}: {}; is the build complete?", plan.name, plan.argv[0],
                   std::strerror(error));
@@ -160,8 +159,7 @@ void Children::kill_all() {
 }
 
 bool Children::has(const std::string& name) const {
-  return std::any_of(running_.begin(), running_.end(),
-                     [&](const Child& child) { return child.name == name; });
+  return std::ranges::find(running_, name, &Child::name) != running_.end();
 }
 
 bool Ended::well() const { return WIFEXITED(status) && WEXITSTATUS(status) == 0; }

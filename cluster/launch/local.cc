@@ -14,6 +14,7 @@
 
 #include "cluster/launch/children.h"
 #include "proto/base/failure.h"
+#include "proto/system/descriptor.h"
 #include "proto/system/program.h"
 #include "proto/system/pulse.h"
 
@@ -28,29 +29,26 @@ class Signals {
     sigemptyset(&watched);
     for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGCHLD}) sigaddset(&watched, signal);
     sigprocmask(SIG_BLOCK, &watched, &before_);
-    descriptor_ = signalfd(-1, &watched, SFD_CLOEXEC | SFD_NONBLOCK);
-    if (descriptor_ < 0) throw Failure("cannot watch signals: {}", std::strerror(errno));
+    descriptor_ = Descriptor(signalfd(-1, &watched, SFD_CLOEXEC | SFD_NONBLOCK));
+    if (!descriptor_.valid()) throw Failure("cannot watch signals: {}", std::strerror(errno));
   }
-  ~Signals() {
-    close(descriptor_);
-    sigprocmask(SIG_SETMASK, &before_, nullptr);
-  }
+  ~Signals() { sigprocmask(SIG_SETMASK, &before_, nullptr); }
   Signals(const Signals&) = delete;
   Signals& operator=(const Signals&) = delete;
 
   // Returns after `patience`, or earlier with a stop signal, or with nothing when a child changed.
   std::optional<int> wait(Milliseconds patience) {
-    pollfd watched{descriptor_, POLLIN, 0};
+    pollfd watched{descriptor_.get(), POLLIN, 0};
     poll(&watched, 1, static_cast<int>(std::max<Milliseconds::rep>(0, patience.count())));
     signalfd_siginfo event;
-    while (read(descriptor_, &event, sizeof event) == static_cast<ssize_t>(sizeof event)) {
+    while (read(descriptor_.get(), &event, sizeof event) == static_cast<ssize_t>(sizeof event)) {
       if (event.ssi_signo != SIGCHLD) return static_cast<int>(event.ssi_signo);
     }
     return std::nullopt;
   }
 
  private:
-  int descriptor_ = -1;
+  Descriptor descriptor_;
   sigset_t before_;
 };
 
@@ -101,16 +99,15 @@ class Deaths {
 };
 
 const ProcessPlan& plan_of(const std::vector<ProcessPlan>& plan, const std::string& name) {
-  return *std::find_if(plan.begin(), plan.end(),
-                       [&](const ProcessPlan& process) { return process.name == name; });
+  return *std::ranges::find(plan, name, &ProcessPlan::name);
 }
 
 }  // namespace
 
-Ending run_together(const std::vector<ProcessPlan>& plan, const std::string& main_process,
-                    const Limits& limits, const Supervision& supervision) {
+int run_together(const std::vector<ProcessPlan>& plan, const std::string& main_process,
+                 const Limits& limits, const Supervision& supervision) {
   Signals signals;
-  if (stop_requested()) return {SIGINT};
+  if (stop_requested()) return SIGINT;
   Children children;
   const auto start_all = [&] {
     for (const ProcessPlan& process : plan) children.start(process, limits.start);
@@ -122,7 +119,7 @@ Ending run_together(const std::vector<ProcessPlan>& plan, const std::string& mai
     supervision.tick();
     if (const std::optional<int> signal = signals.wait(limits.tick)) {
       stop(children, signals, main_process, limits, limits.others);
-      return {*signal};
+      return *signal;
     }
     children.kill_hung(limits.hung, limits.clock());
     // Others may end just because the main process has: all ends are read first.
@@ -137,19 +134,17 @@ Ending run_together(const std::vector<ProcessPlan>& plan, const std::string& mai
     }
     if (done) {
       stop(children, signals, "", limits, limits.after_work);
-      return {};
+      return 0;
     }
     if (dead.empty()) continue;
-    const auto knows = std::find_if(dead.begin(), dead.end(),
-                                    [](const Ended& ended) { return ended.knows_why(); });
+    const auto knows = std::ranges::find_if(dead, &Ended::knows_why);
     if (knows != dead.end()) {
       stop(children, signals, main_process, limits, limits.others);
       throw Failure("{}", knows->cause());
     }
     for (const Ended& ended : dead) deaths.count(ended, supervision.progress(), limits.deaths);
-    const auto heart = std::find_if(dead.begin(), dead.end(), [&](const Ended& ended) {
-      return !plan_of(plan, ended.name).replaceable;
-    });
+    const auto heart = std::ranges::find_if(
+        dead, [&](const Ended& ended) { return !plan_of(plan, ended.name).replaceable; });
     if (heart != dead.end()) {
       children.kill_all();
       supervision.died(*heart, /*all=*/true);
@@ -163,11 +158,11 @@ Ending run_together(const std::vector<ProcessPlan>& plan, const std::string& mai
   }
 }
 
-Ending run_queue(const std::vector<ProcessPlan>& plan, int jobs, const Limits& limits,
-                 const std::function<void()>& tick) {
+int run_queue(const std::vector<ProcessPlan>& plan, int jobs, const Limits& limits,
+              const std::function<void()>& tick) {
   CORRIDOR_CHECK(jobs > 0, "{} jobs", jobs);
   Signals signals;
-  if (stop_requested()) return {SIGINT};
+  if (stop_requested()) return SIGINT;
   Children children;
   std::size_t next = 0;
   while (true) {
@@ -176,10 +171,10 @@ Ending run_queue(const std::vector<ProcessPlan>& plan, int jobs, const Limits& l
     }
     beat();
     tick();
-    if (children.size() == 0) return {};
+    if (children.size() == 0) return 0;
     if (const std::optional<int> signal = signals.wait(limits.tick)) {
       stop(children, signals, "", limits, limits.others);
-      return {*signal};
+      return *signal;
     }
     children.kill_hung(limits.hung, limits.clock());
     while (const std::optional<Ended> ended = children.reap()) {
@@ -188,10 +183,6 @@ Ending run_queue(const std::vector<ProcessPlan>& plan, int jobs, const Limits& l
       throw Failure("{}", ended->cause());
     }
   }
-}
-
-std::filesystem::path program_directory() {
-  return std::filesystem::read_symlink("/proc/self/exe").parent_path();
 }
 
 int available_cores() {

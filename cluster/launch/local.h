@@ -36,11 +36,6 @@ struct Limits {
   Clock clock = steady_now;   // by which these times pass, but for `tick` and `start`
 };
 
-// How the processes came to their end, when not by a failure.
-struct Ending {
-  int signal = 0;  // that stopped them early; 0: the work is done
-};
-
 // What run_together tells and asks. All of it is called from its waiting loop; what it throws ends
 // all processes.
 struct Supervision {
@@ -53,22 +48,20 @@ struct Supervision {
 };
 
 // Starts the plan's processes and waits until `main_process` has ended with status 0, then ends the
-// others. A stop signal ends `main_process` first, then the others.
+// others. A stop signal ends `main_process` first, then the others. Returns that signal, or 0 when
+// the work is done, as run_queue does.
 //
 // A process that dies or hangs before that is started again: by itself when it is replaceable, else
 // all are ended and started anew. One that ends by itself with a line that says why (status 1) ends
 // all: throws Failure with its name, that line and its log; also when one dies again and again, or
 // cannot be started.
-Ending run_together(const std::vector<ProcessPlan>& plan, const std::string& main_process,
-                    const Limits& limits, const Supervision& supervision);
+int run_together(const std::vector<ProcessPlan>& plan, const std::string& main_process,
+                 const Limits& limits, const Supervision& supervision);
 
 // Runs every process of the plan, at most `jobs` at a time, in order. One that ends
 // with another status than 0, or hangs, ends all: throws Failure with its name, last error line and
 // log.
-Ending run_queue(const std::vector<ProcessPlan>& plan, int jobs, const Limits& limits,
-                 const std::function<void()>& tick);
-
-// The directory of the running program: the others lie beside it.
-std::filesystem::path program_directory();
+int run_queue(const std::vector<ProcessPlan>& plan, int jobs, const Limits& limits,
+              const std::function<void()>& tick);
 
 }  // namespace corridor::cluster

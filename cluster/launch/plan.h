@@ -1,4 +1,4 @@
-// Which processes a command starts: the run's configuration -> a list. Pure.
+// Which processes a command starts: the run's configuration -> a list.
 #pragma once
 
 #include <filesystem>
@@ -20,32 +20,20 @@ struct ProcessPlan {
   bool operator==(const ProcessPlan&) const = default;
 };
 
+// The path of one of our programs: they all lie beside the running one.
+std::string program_path(const char* name);
+
 // Replay server, learner, and actors 0 .. actors-1. The learner ends by itself when all is done,
-// and is to be stopped before the others, since its checkpoint needs them. `programs` is the
-// directory of the programs.
-std::vector<ProcessPlan> training_plan(const RunSettings& settings, const RunDirectory& directory,
-                                       const std::filesystem::path& programs);
+// and is to be stopped before the others, since its checkpoint needs them.
+std::vector<ProcessPlan> training_plan(const RunSettings& settings, const RunDirectory& directory);
 
-// One greedy evaluation by one actor process.
-struct EvaluationJob {
-  std::string planner;
-  std::uint64_t seed = 0;
-  std::int64_t steps = 0;
-
-  EvaluationName name() const { return {planner, seed}; }
-  bool operator==(const EvaluationJob&) const = default;
-};
+// An actor by itself; its log is the directory's of that name.
+ProcessPlan actor_process(const std::string& name, const ActorTask& task,
+                          const RunDirectory& directory);
 
 // Every planner with every seed, planner by planner.
-std::vector<EvaluationJob> evaluation_jobs(const std::vector<std::string>& planners,
+std::vector<EvaluateTask> evaluation_tasks(const std::vector<std::string>& planners,
                                            const std::vector<std::uint64_t>& seeds,
                                            std::int64_t steps);
-// In the world of `directory`, with the networks of `trained`. `fcd`: where SUMO's trajectories go;
-// empty for none.
-ProcessPlan evaluation_process(const EvaluationJob& job, const RunDirectory& directory,
-                               const RunDirectory& trained, const std::filesystem::path& programs,
-                               const std::filesystem::path& fcd);
-// Looks back on the collisions of what an evaluation in `directory` wrote.
-ProcessPlan hindsight_process(const EvaluationJob& job, const HindsightLimits& limits,
-                              const RunDirectory& directory, const std::filesystem::path& programs);
+
 }  // namespace corridor::cluster

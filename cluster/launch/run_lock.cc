@@ -39,32 +39,28 @@ Owner read_owner(int descriptor) {
 
 }  // namespace
 
-RunLock::RunLock(const RunDirectory& directory, std::chrono::milliseconds patience) {
+Descriptor lock_run(const RunDirectory& directory, std::chrono::milliseconds patience) {
   const std::filesystem::path file = directory.root() / "lock";
   // Not close-on-exec: the run's processes are to hold it too.
-  descriptor_ = open(file.c_str(), O_RDWR | O_CREAT, 0644);
-  if (descriptor_ < 0) throw Failure("cannot open {}: {}", file.string(), std::strerror(errno));
+  Descriptor lock(open(file.c_str(), O_RDWR | O_CREAT, 0644));
+  if (!lock.valid()) throw Failure("cannot open {}: {}", file.string(), std::strerror(errno));
   const TimePoint deadline = steady_now() + patience;
-  while (flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
-    const Owner owner = read_owner(descriptor_);
+  while (flock(lock.get(), LOCK_EX | LOCK_NB) != 0) {
+    const Owner owner = read_owner(lock.get());
     if (owner.gone() && steady_now() < deadline && !stop_requested()) {
       poll(nullptr, 0, 50);
       continue;
     }
-    close(descriptor_);
     throw Failure("{} is going on: process {} on {} runs it{}", directory.root().string(),
                   owner.pid, owner.host,
                   owner.gone() ? " (it is gone, but processes that it started still live)" : "");
   }
   const std::string text = fmt::format("{} {}\n", getpid(), host_name());
-  if (ftruncate(descriptor_, 0) != 0 ||
-      pwrite(descriptor_, text.data(), text.size(), 0) != static_cast<ssize_t>(text.size())) {
-    const int error = errno;
-    close(descriptor_);
-    throw Failure("cannot write {}: {}", file.string(), std::strerror(error));
+  if (ftruncate(lock.get(), 0) != 0 ||
+      pwrite(lock.get(), text.data(), text.size(), 0) != static_cast<ssize_t>(text.size())) {
+    throw Failure("cannot write {}: {}", file.string(), std::strerror(errno));
   }
+  return lock;
 }
-
-RunLock::~RunLock() { close(descriptor_); }
 
 }  // namespace corridor::cluster

@@ -4,13 +4,16 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "proto/base/format.h"
+#include "proto/base/text.h"
 
 namespace corridor::cluster {
 namespace {
 
 constexpr double kPlainInterval_s = 10.0;
+constexpr std::size_t kBarWidth = 20;
 
 int terminal_columns(std::FILE* out) {
   winsize size{};
@@ -19,19 +22,23 @@ int terminal_columns(std::FILE* out) {
 
 }  // namespace
 
-std::string progress_bar(double done, int width) {
-  const int filled = static_cast<int>(std::clamp(done, 0.0, 1.0) * width);
-  return fmt::format("[{}{}]", std::string(static_cast<std::size_t>(filled), '#'),
-                     std::string(static_cast<std::size_t>(width - filled), '.'));
+std::string progress_line(const std::string& title, std::int64_t done, std::int64_t total,
+                          const std::string& unit, double per_s) {
+  const double share = total > 0 ? static_cast<double>(done) / static_cast<double>(total) : 1.0;
+  std::string bar(kBarWidth, '.');
+  std::fill_n(bar.begin(), static_cast<int>(std::clamp(share, 0.0, 1.0) * kBarWidth), '#');
+  std::string text = fmt::format("{}[{}] {:5.1f} %  {} of {} {}", title, bar, 100.0 * share,
+                                 grouped(done), grouped(total), unit);
+  if (per_s > 0.0) {
+    text += fmt::format("  {} {}/s  {} left", grouped(std::llround(per_s)), unit,
+                        duration_text(static_cast<double>(total - done) / per_s));
+  }
+  return text;
 }
 
 ProgressDisplay::ProgressDisplay(std::FILE* out) : out_(out), terminal_(isatty(fileno(out)) == 1) {}
 
 ProgressDisplay::~ProgressDisplay() { std::fflush(out_); }
-
-bool ProgressDisplay::due(double now_s) const {
-  return terminal_ || !last_s_ || now_s - *last_s_ >= kPlainInterval_s;
-}
 
 // Back to the first of the lines that stand there, and clear from there on.
 void ProgressDisplay::clear() {
@@ -46,7 +53,7 @@ void ProgressDisplay::announce(const std::string& line) {
 }
 
 void ProgressDisplay::show(const std::vector<std::string>& lines, double now_s) {
-  if (!due(now_s)) return;
+  if (!terminal_ && last_s_ && now_s - *last_s_ < kPlainInterval_s) return;
   last_s_ = now_s;
   clear();
   for (const std::string& line : lines) {

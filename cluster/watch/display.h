@@ -1,6 +1,7 @@
 // Where progress for people goes.
 #pragma once
 
+#include <cstdint>
 #include <cstdio>
 #include <optional>
 #include <string>
@@ -19,8 +20,6 @@ class ProgressDisplay {
   ProgressDisplay(const ProgressDisplay&) = delete;
   ProgressDisplay& operator=(const ProgressDisplay&) = delete;
 
-  // Whether something shown now would be seen: saves the caller the work.
-  bool due(double now_s) const;
   void show(const std::vector<std::string>& lines, double now_s);
   // A line that stays, above what is shown from now on.
   void announce(const std::string& line);
@@ -34,7 +33,9 @@ class ProgressDisplay {
   std::optional<double> last_s_;
 };
 
-// "[#####.....]": `done` in [0, 1].
-std::string progress_bar(double done, int width);
+// "BP  [####....]  71.4 %  1,000,000 of 1,400,000 steps  7,012 steps/s  57 s left"; what follows
+// from the speed only where that is more than 0.
+std::string progress_line(const std::string& title, std::int64_t done, std::int64_t total,
+                          const std::string& unit, double per_s);
 
 }  // namespace corridor::cluster

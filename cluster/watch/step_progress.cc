@@ -1,10 +1,8 @@
 #include "cluster/watch/step_progress.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "proto/base/format.h"
-#include "proto/base/text.h"
 
 namespace corridor::cluster {
 
@@ -24,37 +22,26 @@ void StepProgress::tick(double now_s) {
       if (const auto done = task.steps_done(line)) task.done = std::min(*done, task.steps);
     }
   }
-  if (display_.due(now_s)) display_.show({headline(now_s), details()}, now_s);
+  display_.show(lines(now_s), now_s);
 }
 
-std::string StepProgress::headline(double now_s) const {
+std::vector<std::string> StepProgress::lines(double now_s) const {
   std::int64_t done = 0, total = 0;
-  for (const auto& [task, tail] : tasks_) {
-    done += task.done;
-    total += task.steps;
-  }
-  const double share = total > 0 ? static_cast<double>(done) / static_cast<double>(total) : 1.0;
-  std::string text = fmt::format("{} {} {:5.1f} %  {} of {} {}", title_, progress_bar(share, 20),
-                                 100.0 * share, grouped(done), grouped(total), unit_);
-  if (done > done_at_start_ && now_s > start_s_) {
-    const double rate = static_cast<double>(done - done_at_start_) / (now_s - start_s_);
-    text += fmt::format("  {} {}/s  {} left", grouped(std::llround(rate)), unit_,
-                        duration_text(static_cast<double>(total - done) / rate));
-  }
-  return text;
-}
-
-std::string StepProgress::details() const {
   std::size_t complete = 0;
   std::string running;
   for (const auto& [task, tail] : tasks_) {
+    done += task.done;
+    total += task.steps;
     complete += task.done >= task.steps;
     if (task.done == 0 || task.done >= task.steps) continue;
     running +=
         fmt::format(", {}: {:.0f} %", task.name,
                     100.0 * static_cast<double>(task.done) / static_cast<double>(task.steps));
   }
-  return fmt::format("{} of {} done{}", complete, tasks_.size(), running);
+  const double passed_s = now_s - start_s_;
+  const double rate = passed_s > 0.0 ? static_cast<double>(done - done_at_start_) / passed_s : 0.0;
+  return {progress_line(title_ + " ", done, total, unit_, rate),
+          fmt::format("{} of {} done{}", complete, tasks_.size(), running)};
 }
 
 }  // namespace corridor::cluster

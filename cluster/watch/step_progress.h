@@ -30,13 +30,12 @@ class StepProgress {
   StepProgress(std::string title, std::vector<StepTask> tasks, double now_s,
                std::string unit = "steps");
 
-  // Reads what is new and shows it, when that would be seen.
+  // Reads what is new and shows it.
   void tick(double now_s);
 
   // "evaluation [###....]  43.1 %  51,724 of 120,000 steps  7,012 steps/s  10 s left"
-  std::string headline(double now_s) const;
   // "1 of 3 done, rules 1002: 43 %"
-  std::string details() const;
+  std::vector<std::string> lines(double now_s) const;
 
  private:
   struct Task {

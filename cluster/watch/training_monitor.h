@@ -41,9 +41,12 @@ class TrainingMonitor {
 
   TrainingProgress progress_;
   TrainingScalars scalars_;
-  LineTail learner_;
-  LineTail replay_;
-  std::vector<LineTail> actors_;
+  struct Source {
+    const char* process;  // kLearnerName, kReplayName, kActorName
+    std::size_t index;    // of those
+    LineTail metrics;
+  };
+  std::vector<Source> sources_;
   std::optional<EventWriter> events_;
   bool events_given_up_ = false;
   ProgressDisplay display_;

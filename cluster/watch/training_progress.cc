@@ -1,12 +1,10 @@
 #include "cluster/watch/training_progress.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "cluster/watch/display.h"
-#include "proto/base/failure.h"
-#include "proto/base/text.h"
-#include "proto/run/metrics.h"
+#include "proto/base/format.h"
+#include "proto/run/run_directory.h"
 #include "proto/system/time_account.h"
 
 namespace corridor::cluster {
@@ -23,15 +21,53 @@ constexpr int kPartsNamed = 3;
 
 std::string percent(double share) { return fmt::format("{:.0f} %", 100.0 * share); }
 
+double sum(const CoreTime& parts) {
+  double total = 0.0;
+  for (const auto& [part, value] : parts) total += value;
+  return total;
+}
+
+// "simulate 52 %, update 25 %, world 8 %": the largest parts as shares of the sum.
+std::string largest_parts(const CoreTime& parts) {
+  int count = kPartsNamed;
+  std::vector<std::pair<double, std::string>> sorted;
+  for (const auto& [part, value] : parts) sorted.emplace_back(-value, part);
+  std::sort(sorted.begin(), sorted.end());
+  const double total = sum(parts);
+  std::string text;
+  for (const auto& [negative, part] : sorted) {
+    if (count-- == 0 || total <= 0.0) break;
+    text += fmt::format("{}{} {:.0f} %", text.empty() ? "" : ", ", part, -100.0 * negative / total);
+  }
+  return text;
+}
+
 }  // namespace
+
+CoreTime cores_by_part(const MetricsValues& values) {
+  const double wall_s = value_of(values, kWallTimeMetric);
+  if (wall_s <= 0.0) return {};
+  CoreTime parts;
+  double busy = 0.0;
+  for (std::size_t i = 0; i < kTimeParts; ++i) {
+    const auto part = static_cast<TimePart>(i);
+    const auto found = values.find(time_metric(part));
+    if (is_wait(part) || found == values.end()) continue;
+    parts[time_part_name(part)] = found->second;
+    busy += found->second;
+  }
+  const double cores = value_of(values, kCpuTimeMetric) / wall_s;
+  for (auto& [part, share] : parts) share *= busy > 0.0 ? cores / busy : 0.0;
+  parts["io"] = value_of(values, kIoCpuTimeMetric) / wall_s;
+  return parts;
+}
 
 void TrainingProgress::Recent::add(double value) {
   values.push_back(value);
   if (values.size() > kRecentLines) values.pop_front();
 }
 
-std::optional<double> TrainingProgress::Recent::mean() const {
-  if (values.empty()) return std::nullopt;
+double TrainingProgress::Recent::mean() const {
   double sum = 0.0;
   for (const double value : values) sum += value;
   return sum / static_cast<double>(values.size());
@@ -47,25 +83,21 @@ TrainingProgress::TrainingProgress(const Schedule& schedule, int actors, std::ui
   history_.emplace_back(now_s, steps_done_);
 }
 
-std::int64_t TrainingProgress::steps_total() const {
-  return static_cast<std::int64_t>(schedule_.rounds()) * schedule_.steps_per_round();
-}
-
-void TrainingProgress::enter(const std::string& phase) {
-  if (phase == phase_) return;
-  phase_ = phase;
-  recent_.clear();
-}
-
-void TrainingProgress::note(const char* process, const MetricsLine& line) {
+void TrainingProgress::on(std::string_view process, const MetricsLine& line, double now_s) {
+  // Actors are a round ahead of the learner at most: it says which phase it is.
+  if (process == kLearnerName) {
+    advance(line, now_s);
+  } else if (line.phase != phase_) {
+    return;
+  }
   for (const auto& [name, value] : line.values) {
     recent_[fmt::format("{} {}", process, name)].add(value);
   }
 }
 
-void TrainingProgress::on_learner(const MetricsLine& line, double now_s) {
-  enter(line.phase);
-  note("learner", line);
+void TrainingProgress::advance(const MetricsLine& line, double now_s) {
+  if (line.phase != phase_) recent_.clear();
+  phase_ = line.phase;
   if (line.round >= schedule_.rounds()) return;  // of another configuration
   steps_done_ = static_cast<std::int64_t>(line.round + 1) * schedule_.steps_per_round();
   if (steps_done_ < history_.back().second) history_.clear();  // gone back to a checkpoint
@@ -73,48 +105,28 @@ void TrainingProgress::on_learner(const MetricsLine& line, double now_s) {
   while (history_.size() > 2 && history_[1].first < now_s - kRateWindow_s) history_.pop_front();
 }
 
-void TrainingProgress::on_actor(const MetricsLine& line) {
-  // Actors are a round ahead of the learner at most: it says which phase it is.
-  if (line.phase == phase_) note("actor", line);
-}
-
-void TrainingProgress::on_replay(const MetricsLine& line) {
-  if (line.phase == phase_) note("replay", line);
-}
-
 std::optional<double> TrainingProgress::mean(const std::string& process,
                                              std::string_view name) const {
   const auto found = recent_.find(fmt::format("{} {}", process, name));
-  return found == recent_.end() ? std::nullopt : found->second.mean();
-}
-
-double TrainingProgress::steps_per_s() const {
-  const double passed_s = history_.back().first - history_.front().first;
-  const auto steps = static_cast<double>(history_.back().second - history_.front().second);
-  return passed_s > 0.0 ? steps / passed_s : 0.0;
+  return found == recent_.end() ? std::nullopt : std::optional(found->second.mean());
 }
 
 std::string TrainingProgress::headline() const {
-  const double share = static_cast<double>(steps_done_) / static_cast<double>(steps_total());
-  const double rate = steps_per_s();
-  std::string text =
-      fmt::format("{:<4}{} {:5.1f} %  {} of {} steps", phase_, progress_bar(share, 20),
-                  100.0 * share, grouped(steps_done_), grouped(steps_total()));
-  if (rate > 0.0) {
-    text += fmt::format("  {} steps/s  {} left", grouped(std::llround(rate)),
-                        duration_text(static_cast<double>(steps_total() - steps_done_) / rate));
-  }
-  return text;
+  const double passed_s = history_.back().first - history_.front().first;
+  const auto steps = static_cast<double>(history_.back().second - history_.front().second);
+  return progress_line(fmt::format("{:<4}", phase_), steps_done_,
+                       static_cast<std::int64_t>(schedule_.rounds()) * schedule_.steps_per_round(),
+                       "steps", passed_s > 0.0 ? steps / passed_s : 0.0);
 }
 
 std::string TrainingProgress::details() const {
   std::string text;
   const auto append = [&](const std::string& part) { text += (text.empty() ? "" : "; ") + part; };
-  if (const auto reward = mean("actor", metric::kRewardPer1000)) {
+  if (const auto reward = mean(kActorName, metric::kRewardPer1000)) {
     append(fmt::format("reward {:.0f}, collisions {:.1f} per 1000 steps", *reward,
-                       mean("actor", metric::kCollisionsPer1000).value_or(0.0)));
+                       mean(kActorName, metric::kCollisionsPer1000).value_or(0.0)));
   }
-  if (const auto ratio = mean("replay", metric::kSamplesPerInsert)) {
+  if (const auto ratio = mean(kReplayName, metric::kSamplesPerInsert)) {
     append(fmt::format("{:.1f} samples per insert", *ratio));
   }
   return text.empty() ? "starting" : text;
@@ -123,11 +135,10 @@ std::string TrainingProgress::details() const {
 CoreTime TrainingProgress::cores_of(const std::string& process) const {
   MetricsValues means;
   for (const auto& [name, recent] : recent_) {
-    if (!name.starts_with(process + " time/")) continue;
-    if (const auto value = recent.mean()) means[name.substr(process.size() + 1)] = *value;
+    if (name.starts_with(process + " ")) means[name.substr(process.size() + 1)] = recent.mean();
   }
   CoreTime parts = cores_by_part(means);
-  if (process == "actor") {
+  if (process == kActorName) {
     for (auto& [part, cores] : parts) cores *= actors_;
   }
   return parts;
@@ -135,18 +146,18 @@ CoreTime TrainingProgress::cores_of(const std::string& process) const {
 
 // Who waits for whom, what the cores do, and so what is the bottleneck.
 std::string TrainingProgress::waiting() const {
-  const auto for_actors = mean("learner", time_metric(TimePart::kWaitForActors));
-  const auto for_weights = mean("actor", time_metric(TimePart::kWaitForLearner));
+  const auto for_actors = mean(kLearnerName, time_metric(TimePart::kWaitForActors));
+  const auto for_weights = mean(kActorName, time_metric(TimePart::kWaitForLearner));
   if (!for_actors || !for_weights) return "";
   const double learner_for_replay =
-      mean("learner", time_metric(TimePart::kWaitForReplay)).value_or(0.0);
+      mean(kLearnerName, time_metric(TimePart::kWaitForReplay)).value_or(0.0);
   const double actors_for_replay =
-      mean("actor", time_metric(TimePart::kWaitForReplay)).value_or(0.0);
+      mean(kActorName, time_metric(TimePart::kWaitForReplay)).value_or(0.0);
   const double for_replay = std::max(learner_for_replay, actors_for_replay);
 
-  const CoreTime of_actors = cores_of("actor");
-  const CoreTime of_learner = cores_of("learner");
-  const CoreTime of_replay = cores_of("replay");
+  const CoreTime of_actors = cores_of(kActorName);
+  const CoreTime of_learner = cores_of(kLearnerName);
+  const CoreTime of_replay = cores_of(kReplayName);
   CoreTime of_all;
   for (const CoreTime* parts : {&of_actors, &of_learner, &of_replay}) {
     for (const auto& [part, cores] : *parts) of_all[part] += cores;
@@ -161,11 +172,9 @@ std::string TrainingProgress::waiting() const {
   const Side sides[] = {{for_replay, "the replay server", of_replay},
                         {*for_weights, "the learner", of_learner},
                         {*for_actors, "the actors", of_actors}};
-  const Side most =
-      *std::max_element(std::begin(sides), std::end(sides),
-                        [](const Side& a, const Side& b) { return a.waited_for < b.waited_for; });
+  const Side& most = *std::ranges::max_element(sides, {}, &Side::waited_for);
   const auto described = [](const std::string& name, const CoreTime& parts) {
-    return parts.empty() ? name : name + ": " + largest_parts(parts, kPartsNamed);
+    return parts.empty() ? name : name + ": " + largest_parts(parts);
   };
   std::string bottleneck = "none";
   if (busy >= kCoresBusy) {

@@ -1,10 +1,9 @@
 #include "cluster/watch/training_scalars.h"
 
 #include <algorithm>
-#include <string_view>
 
-#include "proto/base/failure.h"
-#include "proto/run/metrics.h"
+#include "proto/base/format.h"
+#include "proto/run/run_directory.h"
 
 namespace corridor::cluster {
 namespace {
@@ -17,20 +16,20 @@ struct Tag {
   const char* weight;  // the metric that the value is a mean over; may be empty
 };
 constexpr Tag kTags[] = {
-    {"actor", metric::kRewardPer1000, "train", "reward_per_1000_steps", ""},
-    {"actor", metric::kCollisionsPer1000, "train", "collisions_per_1000_steps", ""},
-    {"actor", metric::kEpisodicReturn, "train", "reward_per_episode", metric::kEpisodes},
-    {"actor", metric::kEpsilon, "train", "epsilon", ""},
-    {"learner", metric::kTdLoss, "train", "loss", ""},
-    {"learner", metric::kQValues, "train", "q", ""},
-    {"learner", metric::kRiskValues, "train", "risk", ""},
-    {"learner", metric::kLearningRate, "train", "learning_rate", ""},
-    {"learner", metric::kStepsPerS, "train", "steps_per_second", ""},
-    {"learner", metric::kGreedyRewardPer1000, "selection", "reward_per_1000_steps", ""},
-    {"learner", metric::kGreedyCollisionsPer1000, "selection", "collisions_per_1000_steps", ""},
-    {"learner", metric::kGreedyScore, "selection", "score", ""},
-    {"replay", metric::kSamplesPerInsert, "train", "replay_ratio", ""},
-    {"replay", metric::kReplaySize, "train", "replay_size", ""},
+    {kActorName, metric::kCollisionsPer1000, "train", "collisions_per_1000_steps", ""},
+    {kActorName, metric::kEpsilon, "train", "epsilon", ""},
+    {kActorName, metric::kRewardPer1000, "train", "reward_per_1000_steps", ""},
+    {kActorName, metric::kEpisodicReturn, "train", "reward_per_episode", metric::kEpisodes},
+    {kLearnerName, metric::kTdLoss, "train", "loss", ""},
+    {kLearnerName, metric::kQValues, "train", "q", ""},
+    {kLearnerName, metric::kRiskValues, "train", "risk", ""},
+    {kLearnerName, metric::kLearningRate, "train", "learning_rate", ""},
+    {kLearnerName, metric::kStepsPerS, "train", "steps_per_second", ""},
+    {kLearnerName, metric::kGreedyRewardPer1000, "selection", "reward_per_1000_steps", ""},
+    {kLearnerName, metric::kGreedyCollisionsPer1000, "selection", "collisions_per_1000_steps", ""},
+    {kLearnerName, metric::kGreedyScore, "selection", "score", ""},
+    {kReplayName, metric::kSamplesPerInsert, "train", "replay_ratio", ""},
+    {kReplayName, metric::kReplaySize, "train", "replay_size", ""},
 };
 
 std::string full_name(const Tag& tag, const std::string& phase) {
@@ -42,68 +41,53 @@ std::string full_name(const Tag& tag, const std::string& phase) {
 }  // namespace
 
 TrainingScalars::TrainingScalars(const Schedule& schedule, int actors)
-    : steps_per_round_(schedule.steps_per_round()),
-      actors_reached_(static_cast<std::size_t>(actors)) {}
+    : steps_per_round_(schedule.steps_per_round()) {
+  for (const char* server : {kLearnerName, kReplayName}) groups_[server].reached.resize(1);
+  groups_[kActorName].reached.resize(static_cast<std::size_t>(actors));
+}
 
 std::int64_t TrainingScalars::steps_before(std::uint64_t round) const {
   return static_cast<std::int64_t>(round) * steps_per_round_;
 }
 
-void TrainingScalars::on_actor(int actor, const MetricsLine& line) {
+void TrainingScalars::on(std::string_view process, std::size_t index, const MetricsLine& line) {
+  Group& group = groups_.find(process)->second;
   const std::int64_t step = steps_before(line.round + 1);
-  std::int64_t& reached = actors_reached_.at(static_cast<std::size_t>(actor));
+  std::int64_t& reached = group.reached.at(index);
   // Started again, it says what it said before.
   if (step <= reached) return;
   reached = step;
-  if (step <= actors_last_) return;
-  auto& sums = waiting_[step];
-  for (const Tag& tag : kTags) {
+  if (step <= group.given_on) return;
+  std::vector<Sum>& sums = group.waiting.try_emplace(step, std::size(kTags)).first->second;
+  for (std::size_t i = 0; i < std::size(kTags); ++i) {
+    const Tag& tag = kTags[i];
     const auto value = line.values.find(tag.metric);
-    if (tag.process != "actor" || value == line.values.end()) continue;
+    if (tag.process != process || value == line.values.end()) continue;
     const double weight = *tag.weight == '\0' ? 1.0 : value_of(line.values, tag.weight);
     if (weight <= 0.0) continue;
-    Sum& sum = sums[full_name(tag, line.phase)];
-    sum.value += weight * value->second;
-    sum.weight += weight;
+    sums[i].tag = full_name(tag, line.phase);
+    sums[i].value += weight * value->second;
+    sums[i].weight += weight;
   }
-  const std::int64_t all = *std::ranges::min_element(actors_reached_);
-  while (!waiting_.empty() && waiting_.begin()->first <= all) {
-    StepScalars scalars{waiting_.begin()->first, {}};
-    for (const auto& [tag, sum] : waiting_.begin()->second) {
-      scalars.values.emplace_back(tag, sum.value / sum.weight);
+  const std::int64_t all = *std::ranges::min_element(group.reached);
+  while (!group.waiting.empty() && group.waiting.begin()->first <= all) {
+    StepScalars scalars{group.waiting.begin()->first, {}};
+    for (const auto& [tag, value, weight] : group.waiting.begin()->second) {
+      if (weight > 0.0) scalars.values.emplace_back(tag, value / weight);
     }
-    actors_last_ = scalars.step;
-    ready_.push_back(std::move(scalars));
-    waiting_.erase(waiting_.begin());
+    group.given_on = scalars.step;
+    if (!scalars.values.empty()) ready_.push_back(std::move(scalars));
+    group.waiting.erase(group.waiting.begin());
   }
-}
-
-void TrainingScalars::on_learner(const MetricsLine& line) {
-  give_on(line, "learner", learner_last_);
-}
-
-void TrainingScalars::on_replay(const MetricsLine& line) { give_on(line, "replay", replay_last_); }
-
-void TrainingScalars::give_on(const MetricsLine& line, const char* process, std::int64_t& last) {
-  StepScalars scalars{steps_before(line.round + 1), {}};
-  if (scalars.step <= last) return;
-  last = scalars.step;
-  for (const Tag& tag : kTags) {
-    const auto value = line.values.find(tag.metric);
-    if (tag.process == process && value != line.values.end()) {
-      scalars.values.emplace_back(full_name(tag, line.phase), value->second);
-    }
-  }
-  if (!scalars.values.empty()) ready_.push_back(std::move(scalars));
 }
 
 std::vector<StepScalars> TrainingScalars::take() { return std::exchange(ready_, {}); }
 
 void TrainingScalars::go_back_to(std::int64_t step) {
-  waiting_.clear();
-  for (std::int64_t& reached : actors_reached_) reached = std::min(reached, step);
-  for (std::int64_t* last : {&actors_last_, &learner_last_, &replay_last_}) {
-    *last = std::min(*last, step);
+  for (auto& [process, group] : groups_) {
+    group.waiting.clear();
+    for (std::int64_t& reached : group.reached) reached = std::min(reached, step);
+    group.given_on = std::min(group.given_on, step);
   }
 }
 

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <map>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -19,16 +20,14 @@ struct StepScalars {
   bool operator==(const StepScalars&) const = default;
 };
 
-// What one process says is given on as it is, the actors' means when all of them have come to a
-// step: of no tag does a step come twice, or after a later one, which would make TensorBoard forget
-// values.
+// Means over the processes of a name, given on when all of them have come to a step: of no tag does
+// a step come twice, or after a later one, which would make TensorBoard forget values.
 class TrainingScalars {
  public:
   TrainingScalars(const Schedule& schedule, int actors);
 
-  void on_actor(int actor, const MetricsLine& line);
-  void on_learner(const MetricsLine& line);
-  void on_replay(const MetricsLine& line);
+  // Of kLearnerName, kReplayName or the actor `index` of kActorName.
+  void on(std::string_view process, std::size_t index, const MetricsLine& line);
 
   // Those since the last call.
   std::vector<StepScalars> take();
@@ -41,15 +40,18 @@ class TrainingScalars {
 
  private:
   struct Sum {
+    std::string tag;
     double value = 0.0;
     double weight = 0.0;
   };
-  void give_on(const MetricsLine& line, const char* process, std::int64_t& last);
+  struct Group {
+    std::vector<std::int64_t> reached;                 // by process
+    std::map<std::int64_t, std::vector<Sum>> waiting;  // by step; as in the table of tags
+    std::int64_t given_on = 0;                         // up to this step
+  };
 
   std::int64_t steps_per_round_;
-  std::vector<std::int64_t> actors_reached_;                           // by actor
-  std::map<std::int64_t, std::map<std::string, Sum>> waiting_;         // by step, tag
-  std::int64_t actors_last_ = 0, learner_last_ = 0, replay_last_ = 0;  // steps given on
+  std::map<std::string, Group, std::less<>> groups_;  // processes by name
   std::vector<StepScalars> ready_;
 };
 

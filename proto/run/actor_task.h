@@ -19,8 +19,6 @@
 
 namespace corridor {
 
-inline constexpr const char* kActorProgram = "corridor-actor";
-
 // Be an actor of a training.
 struct TrainTask {
   static constexpr const char* kCommand = "train";

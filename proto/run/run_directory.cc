@@ -12,7 +12,7 @@ constexpr const char* kFolders[] = {"sumo", "log", "metrics", "checkpoints", "ev
 
 }  // namespace
 
-std::string actor_name(int index) { return fmt::format("actor-{}", index); }
+std::string actor_name(int index) { return fmt::format("{}-{}", kActorName, index); }
 
 RunDirectory RunDirectory::create(const fs::path& root) {
   RunDirectory directory(root);

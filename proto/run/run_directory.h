@@ -27,10 +27,16 @@
 
 namespace corridor {
 
-// The processes of a training, as their logs and metrics files are called.
+// The processes of a training, as their logs and metrics files are called; all actors together.
 inline constexpr const char* kLearnerName = "learner";
 inline constexpr const char* kReplayName = "replay";
+inline constexpr const char* kActorName = "actor";
 std::string actor_name(int index);  // "actor-0"
+
+// Their programs.
+inline constexpr const char* kLearnerProgram = "corridor-learner";
+inline constexpr const char* kReplayProgram = "corridor-replay";
+inline constexpr const char* kActorProgram = "corridor-actor";
 
 class RunDirectory {
  public:

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "cluster/launch/local.h"
-#include "cluster/watch/core_time.h"
 #include "cluster/watch/training_progress.h"
 #include "proto/base/failure.h"
 #include "proto/config/run_config.h"

@@ -33,9 +33,13 @@ class Drive : public testing::Test {
 
 TEST_F(Drive, WantsAStretchOfTime) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double infinity = std::numeric_limits<double>::infinity();
   for (const auto& [from_s, seconds, interval_s] : {std::array{-1.0, 1.0, 1.0},
                                                     {0.0, 0.0, 1.0},
                                                     {0.0, 1.0, 0.0},
+                                                    {0.0, infinity, 1.0},
+                                                    {1e300, 1.0, 1.0},
+                                                    {0.0, 1.0, infinity},
                                                     {nan, 1.0, 1.0},
                                                     {0.0, nan, 1.0}}) {
     DriveOptions options;

@@ -89,7 +89,7 @@ TEST_F(Training, ACompleteRunIsNotResumedAndThatIsNoError) {
 
 TEST_F(Training, ARunThatIsGoingOnIsNotResumed) {
   const RunDirectory directory = make_run(run_, 1);
-  const RunLock lock(directory);
+  const Descriptor lock = lock_run(directory);
   EXPECT_THAT([&] { resume({.run = run_}, "corridor"); },
               ThrowsMessage<Failure>(HasSubstr("is going on")));
 }

@@ -88,7 +88,7 @@ class Local : public testing::Test {
 TEST_F(Local, WhenTheMainProcessIsDoneTheOthersAreEnded) {
   const Event ready = event("ready");
   const auto plan = {script("server", ready.tell + "exec sleep 600"), script("main", ready.wait)};
-  EXPECT_EQ(run_together(plan, "main", kLimits, {}).signal, 0);
+  EXPECT_EQ(run_together(plan, "main", kLimits, {}), 0);
   expect_gone("server");
 }
 
@@ -100,7 +100,7 @@ TEST_F(Local, OneThatIgnoresTheRequestToEndIsKilled) {
   const auto plan = {
       script("deaf", "trap ': > " + file("asked").string() + "' TERM\n" + ready.tell + kForEver),
       script("main", ready.wait)};
-  EXPECT_EQ(run_together(plan, "main", limits, {}).signal, 0);
+  EXPECT_EQ(run_together(plan, "main", limits, {}), 0);
   EXPECT_TRUE(exists("asked"));
   expect_gone("deaf");
 }
@@ -110,7 +110,7 @@ TEST_F(Local, WhatAProcessStartedItselfEndsWithIt) {
   // which can so wait for its end.
   ASSERT_EQ(prctl(PR_SET_CHILD_SUBREAPER, 1), 0);
   const std::string leave = "sleep 600 & echo $! > " + file("child.pid").string();
-  EXPECT_EQ(run_together({script("main", leave)}, "main", kLimits, {}).signal, 0);
+  EXPECT_EQ(run_together({script("main", leave)}, "main", kLimits, {}), 0);
   int status = 0;
   ASSERT_EQ(waitpid(pid_of("child"), &status, 0), pid_of("child"));
   EXPECT_EQ(WTERMSIG(status), SIGKILL);
@@ -146,7 +146,7 @@ TEST_F(Local, WhileTheWorkAdvancesDeathsAreNoReasonToGiveUp) {
   Supervision supervision;
   std::uint64_t progress = 0;
   supervision.progress = [&] { return ++progress; };
-  EXPECT_EQ(run_together({plan}, "main", kLimits, supervision).signal, 0);
+  EXPECT_EQ(run_together({plan}, "main", kLimits, supervision), 0);
   EXPECT_EQ(content("lives").size(), 2u * 12);
 }
 
@@ -165,7 +165,7 @@ TEST_F(Local, AReplaceableProcessIsStartedAgainByItself) {
     EXPECT_FALSE(all);
     deaths.push_back(ended.cause());
   };
-  EXPECT_EQ(run_together(plan, "main", kLimits, supervision).signal, 0);
+  EXPECT_EQ(run_together(plan, "main", kLimits, supervision), 0);
   EXPECT_EQ(content("mains"), "x\n");
   ASSERT_EQ(deaths.size(), 2u);
   EXPECT_THAT(deaths[0], HasSubstr("actor ended with signal 9"));
@@ -185,7 +185,7 @@ TEST_F(Local, WithAnyOtherAllAreStartedAnewAndNoneIsLeftWhenThatIsTold) {
     if (exists("server.pid")) expect_gone("server");
     ++told;
   };
-  EXPECT_EQ(run_together(plan, "main", kLimits, supervision).signal, 0);
+  EXPECT_EQ(run_together(plan, "main", kLimits, supervision), 0);
   EXPECT_EQ(told, 1);
 }
 
@@ -202,7 +202,7 @@ TEST_F(Local, OneThatEndsWellBeforeTheWorkIsDoneIsMissed) {
   std::vector<std::string> died;
   Supervision supervision;
   supervision.died = [&](const Ended& ended, bool) { died.push_back(ended.name); };
-  EXPECT_EQ(run_together(plan, "main", kLimits, supervision).signal, 0);
+  EXPECT_EQ(run_together(plan, "main", kLimits, supervision), 0);
   EXPECT_THAT(died, testing::ElementsAre("server"));
 }
 
@@ -219,7 +219,7 @@ TEST_F(Local, OneWithoutASignOfLifeIsKilledAndStartedAgain) {
     if (pid_of("main") > 0 && is_stopped(pid_of("main"))) time.advance(std::chrono::seconds(1));
   });
   supervision.died = [&](const Ended& ended, bool) { cause = ended.cause(); };
-  EXPECT_EQ(run_together({plan}, "main", limits, supervision).signal, 0);
+  EXPECT_EQ(run_together({plan}, "main", limits, supervision), 0);
   EXPECT_THAT(cause, HasSubstr("main was killed, since it hung"));
   EXPECT_GE(time.now(), TimePoint(kLimits.hung));
   EXPECT_EQ(content("starts"), "x\nx\n");
@@ -242,11 +242,11 @@ TEST_F(Local, ASignalStopsTheMainProcessFirstSoThatItCanFinishWithTheOthersHelp)
                      script("main", "trap 'kill -0 $(cat " + file("server.pid").string() +
                                         ") && echo together; exit 0' TERM; : > " +
                                         file("main.ready").string() + "\n" + kForEver)};
-  const Ending ending = run_together(plan, "main", kLimits, ticking([&] {
-                                       if (exists("main.ready") && exists("server.pid"))
-                                         kill(getpid(), SIGINT);
-                                     }));
-  EXPECT_EQ(ending.signal, SIGINT);
+  const int signal = run_together(plan, "main", kLimits, ticking([&] {
+                                    if (exists("main.ready") && exists("server.pid"))
+                                      kill(getpid(), SIGINT);
+                                  }));
+  EXPECT_EQ(signal, SIGINT);
   EXPECT_THAT(content("main.log"), EndsWith("together\n"));  // a shell may name its dead first
   expect_gone("server");
   expect_gone("main");
@@ -260,11 +260,11 @@ TEST_F(Local, ASecondSignalKillsAtOnceWhateverIsStillGoingOn) {
   testing_support::ManualClock stands_still;
   Limits limits = kLimits;
   limits.clock = stands_still.clock();
-  const Ending ending = run_together(plan, "main", limits, ticking([&] {
-                                       if (exists("main.ready") && !std::exchange(sent, true))
-                                         kill(getpid(), SIGTERM);
-                                     }));
-  EXPECT_EQ(ending.signal, SIGTERM);
+  const int signal = run_together(plan, "main", limits, ticking([&] {
+                                    if (exists("main.ready") && !std::exchange(sent, true))
+                                      kill(getpid(), SIGTERM);
+                                  }));
+  EXPECT_EQ(signal, SIGTERM);
   expect_gone("main");
 }
 
@@ -276,10 +276,10 @@ TEST_F(Local, TheSameSignalTwiceInAMomentIsOne) {
   Limits limits = kLimits;
   limits.repeated_signal = Milliseconds(1);
   limits.clock = stands_still.clock();
-  const Ending ending = run_together(plan, "main", limits, ticking([&] {
-                                       if (exists("main.ready")) kill(getpid(), SIGTERM);
-                                     }));
-  EXPECT_EQ(ending.signal, SIGTERM);
+  const int signal = run_together(plan, "main", limits, ticking([&] {
+                                    if (exists("main.ready")) kill(getpid(), SIGTERM);
+                                  }));
+  EXPECT_EQ(signal, SIGTERM);
   EXPECT_THAT(content("main.log"), EndsWith("finished\n"));
 }
 
@@ -331,7 +331,7 @@ TEST_F(Local, AQueueRunsEveryProcessAndNoMoreAtATimeThanAllowed) {
                               " | grep -c running >> " + file("counts").string() + "'\n" + count +
                               "rm " + mine + "'"));
   }
-  EXPECT_EQ(run_queue(plan, 3, kLimits, [] {}).signal, 0);
+  EXPECT_EQ(run_queue(plan, 3, kLimits, [] {}), 0);
   std::ifstream counts(file("counts"));
   int lines = 0;
   for (int running; counts >> running; ++lines) EXPECT_LE(running, 3);

@@ -7,7 +7,6 @@
 #include <unistd.h>
 
 #include <chrono>
-#include <optional>
 
 #include "proto/base/failure.h"
 #include "tests/support/temporary_directory.h"
@@ -26,16 +25,15 @@ class RunLockTest : public testing::Test {
 };
 
 TEST_F(RunLockTest, ARunThatIsGoingOnIsRefusedNamingItsOwner) {
-  const RunLock lock(directory_);
-  EXPECT_THAT([&] { RunLock second(directory_); },
+  const Descriptor lock = lock_run(directory_);
+  EXPECT_THAT([&] { const Descriptor second = lock_run(directory_); },
               ThrowsMessage<Failure>(AllOf(HasSubstr("is going on"),
                                            HasSubstr("process " + std::to_string(getpid())))));
 }
 
 TEST_F(RunLockTest, IsFreeAgainAfterwards) {
-  std::optional<RunLock> lock(std::in_place, directory_);
-  lock.reset();
-  EXPECT_NO_THROW(RunLock again(directory_));
+  lock_run(directory_).close();
+  EXPECT_NO_THROW(lock_run(directory_).close());
 }
 
 TEST_F(RunLockTest, StaysWithTheProcessesOfALauncherThatDied) {
@@ -45,7 +43,7 @@ TEST_F(RunLockTest, StaysWithTheProcessesOfALauncherThatDied) {
   const pid_t launcher = fork();
   if (launcher == 0) {
     close(ends[1]);
-    const RunLock lock(directory_);
+    const Descriptor lock = lock_run(directory_);
     if (fork() == 0) {
       char byte;
       _exit(read(ends[0], &byte, 1) == 0 ? 0 : 1);
@@ -53,10 +51,10 @@ TEST_F(RunLockTest, StaysWithTheProcessesOfALauncherThatDied) {
     _exit(0);
   }
   waitpid(launcher, nullptr, 0);
-  EXPECT_THAT([&] { RunLock lock(directory_, std::chrono::milliseconds(0)); },
+  EXPECT_THAT([&] { lock_run(directory_, std::chrono::milliseconds(0)).close(); },
               ThrowsMessage<Failure>(HasSubstr("processes that it started still live")));
   close(ends[1]);
-  EXPECT_NO_THROW(RunLock lock(directory_, std::chrono::seconds(20)));
+  EXPECT_NO_THROW(lock_run(directory_, std::chrono::seconds(20)).close());
   close(ends[0]);
 }
 

@@ -24,9 +24,7 @@ TEST(Display, InAFileLinesFollowEachOtherEveryTenSeconds) {
   {
     const File out(std::fopen(path.c_str(), "w"), std::fclose);
     ProgressDisplay display(out.get());
-    EXPECT_TRUE(display.due(100.0));
     display.show({"one", "two"}, 100.0);
-    EXPECT_FALSE(display.due(109.9));
     display.show({"too early"}, 109.9);
     display.announce("stays");
     display.show({"three"}, 110.0);
@@ -52,7 +50,6 @@ TEST(Display, OnATerminalLinesAreWrittenOverAgainAndNoneWraps) {
   {
     ProgressDisplay display(out.get());
     display.show({"one", "longer than ten"}, 0.0);
-    EXPECT_TRUE(display.due(0.1));
     display.show({"three"}, 0.1);
     display.announce("stays");
     display.show({"four"}, 0.2);
@@ -69,10 +66,13 @@ TEST(Display, OnATerminalLinesAreWrittenOverAgainAndNoneWraps) {
   close(master);
 }
 
-TEST(ProgressBar, FillsFromTheLeftAndNeverOverflows) {
-  EXPECT_EQ(progress_bar(0.0, 4), "[....]");
-  EXPECT_EQ(progress_bar(0.5, 4), "[##..]");
-  EXPECT_EQ(progress_bar(1.7, 4), "[####]");
+TEST(ProgressLine, FillsFromTheLeftAndNeverOverflows) {
+  EXPECT_EQ(progress_line("", 0, 4000, "steps", 0.0),
+            "[....................]   0.0 %  0 of 4,000 steps");
+  EXPECT_EQ(progress_line("BP  ", 1000, 4000, "steps", 500.0),
+            "BP  [#####...............]  25.0 %  1,000 of 4,000 steps  500 steps/s  6 s left");
+  EXPECT_EQ(progress_line("", 17, 10, "cars", 0.0),
+            "[####################] 170.0 %  17 of 10 cars");
 }
 
 }  // namespace
