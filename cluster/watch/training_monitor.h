@@ -35,17 +35,17 @@ class TrainingMonitor {
   std::int64_t steps_done() const { return progress_.steps_done(); }
 
  private:
+  struct Source {
+    const char* process;  // kLearnerName, kReplayName, kActorName
+    std::size_t index;    // of those
+    LineTail metrics;
+  };
   template <typename Action>
   void write_events(const Action& action);
   void go_on_from(std::uint64_t rounds_done);
 
   TrainingProgress progress_;
   TrainingScalars scalars_;
-  struct Source {
-    const char* process;  // kLearnerName, kReplayName, kActorName
-    std::size_t index;    // of those
-    LineTail metrics;
-  };
   std::vector<Source> sources_;
   std::optional<EventWriter> events_;
   bool events_given_up_ = false;
