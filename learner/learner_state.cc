@@ -51,11 +51,6 @@ class Reader {
   const std::string& file_;
 };
 
-template <typename T>
-void put_number(TensorFile& tensors, const std::string& name, T value) {
-  tensors.put<T>(name, {value});
-}
-
 }  // namespace
 
 Phase phase_in_progress(const Schedule& schedule, std::uint64_t next_round) {
@@ -81,21 +76,21 @@ TensorFile to_tensors(const LearnerState& state, const RunConfig& config) {
     tensors.put(network.name, std::move(networks[network.id]));
   }
 
-  put_number(tensors, "next_round", state.next_round);
+  tensors.put("next_round", std::vector{state.next_round});
   tensors.put("td.online", state.td.online);
   tensors.put("td.target", state.td.target);
   tensors.put("td.mean_gradient", state.td.mean_gradient);
   tensors.put("td.mean_squared_gradient", state.td.mean_squared_gradient);
-  put_number(tensors, "td.updates", state.td.updates);
+  tensors.put("td.updates", std::vector{state.td.updates});
   for (std::size_t i = 0; i < state.published.size(); ++i) {
-    put_number(tensors, published_name(i, "version"), state.published[i].version);
+    tensors.put(published_name(i, "version"), std::vector{state.published[i].version});
     for (const NamedNetwork& network : kNetworks) {
       tensors.put(published_name(i, network.name), state.published[i].networks[network.id]);
     }
   }
   if (state.best) {
-    put_number(tensors, "best.version", state.best->version);
-    put_number(tensors, "best.score", state.best->score);
+    tensors.put("best.version", std::vector{state.best->version});
+    tensors.put("best.score", std::vector{state.best->score});
     tensors.put("best.parameters", state.best->parameters);
   }
   return tensors;

@@ -4,7 +4,7 @@
 #include "learner/blas.h"
 #include "learner/publisher.h"
 #include "learner/replay_client.h"
-#include "learner/torch_q_network.h"
+#include "learner/td_networks.h"
 #include "learner/training.h"
 #include "proto/base/json.h"
 #include "proto/config/run_config.h"

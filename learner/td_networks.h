@@ -44,6 +44,13 @@ class TdNetworks {
   virtual TdState state() const = 0;                  // updates: steps so far
 };
 
+// Where LibTorch is to compute (config key run.device). Throws Failure when it has no such device
+// here.
+void check_device(Device device);
+
+// Keeps LibTorch to the calling thread; call it first in main.
+void use_one_torch_thread();
+
 // `state`'s vectors have the shape's size. torch_networks throws Failure as check_device does.
 std::unique_ptr<TdNetworks> cpu_networks(const NetworkShape& shape, const DqnSettings& dqn,
                                          const TdState& state);

@@ -1,9 +1,9 @@
 #include "learner/td_update.h"
 
-#include <utility>
+#include <cmath>
 
-#include "learner/td_loss.h"
 #include "proto/base/failure.h"
+#include "proto/base/random.h"
 
 namespace corridor::learner {
 namespace {
@@ -24,6 +24,23 @@ TdState part_of(const TdState& state, std::size_t start, std::size_t size) {
 }
 
 }  // namespace
+
+std::vector<float> initial_parameters(const NetworkShape& shape, std::uint64_t seed, Phase phase,
+                                      int networks) {
+  std::vector<float> values(static_cast<std::size_t>(networks) * shape.parameters());
+  for (std::size_t start = 0; start < values.size(); start += shape.parameters()) {
+    for (const NetworkShape::Layer& layer : shape.layers()) {
+      const double bound = 1.0 / std::sqrt(static_cast<double>(layer.inputs));
+      const std::size_t end = start + layer.biases + static_cast<std::size_t>(layer.outputs);
+      for (std::size_t i = start + layer.weights; i < end; ++i) {
+        const double unit =
+            random_unit(seed, Purpose::kInitialWeights, {static_cast<std::uint64_t>(phase), i});
+        values[i] = static_cast<float>(bound * (2.0 * unit - 1.0));
+      }
+    }
+  }
+  return values;
+}
 
 TdState initial_td_state(const std::vector<float>& parameters) {
   const std::vector<float> zeros(parameters.size(), 0.0f);

@@ -13,6 +13,11 @@
 
 namespace corridor::learner {
 
+// Of `networks` networks of this shape, one after the other: uniform in +-1/sqrt(fan-in), weights
+// and biases alike, each a function of (seed, phase, index).
+std::vector<float> initial_parameters(const NetworkShape& shape, std::uint64_t seed, Phase phase,
+                                      int networks = 1);
+
 // The state before the first update: target = online, no moments.
 TdState initial_td_state(const std::vector<float>& parameters);
 

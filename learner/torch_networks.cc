@@ -1,9 +1,7 @@
 #include <torch/torch.h>
 
-#include <utility>
-
 #include "learner/td_networks.h"
-#include "learner/torch_q_network.h"
+#include "proto/base/failure.h"
 
 namespace corridor::learner {
 namespace {
@@ -13,15 +11,16 @@ torch::Tensor view(std::span<const float> values) {
                           {static_cast<std::int64_t>(values.size())});
 }
 
-std::vector<float> copy(const torch::Tensor& tensor) {
-  const torch::Tensor host = tensor.to(torch::kCPU);
-  return {host.data_ptr<float>(), host.data_ptr<float>() + host.numel()};
-}
-
 std::span<const float> values(const torch::Tensor& host) {
   return {host.data_ptr<float>(), static_cast<std::size_t>(host.numel())};
 }
 
+std::vector<float> copy(const torch::Tensor& tensor) {
+  const torch::Tensor host = tensor.detach().to(torch::kCPU);
+  return {host.data_ptr<float>(), host.data_ptr<float>() + host.numel()};
+}
+
+// Networks as flat tensors [parameters], so that copies, checkpoints and Adam touch one array.
 class TorchNetworks : public TdNetworks {
  public:
   TorchNetworks(const NetworkShape& shape, const DqnSettings& dqn, Device device,
@@ -29,18 +28,15 @@ class TorchNetworks : public TdNetworks {
       : shape_(shape),
         dqn_(dqn),
         device_(name_of(device)),
-        online_(shape, device),
-        target_(shape, device) {
+        online_(view(state.online).clone().to(device_)),
+        target_(view(state.target).clone().to(device_)) {
     // Adam sees one parameter, the flat vector. It makes its state in its first step; with a
     // gradient of 0 that step moves nothing.
-    torch::Tensor& flat = online_.parameter_tensor();
-    flat.set_requires_grad(true);
-    flat.mutable_grad() = torch::zeros_like(flat);
-    adam_ = std::make_unique<torch::optim::Adam>(std::vector<torch::Tensor>{flat},
+    online_.set_requires_grad(true);
+    online_.mutable_grad() = torch::zeros_like(online_);
+    adam_ = std::make_unique<torch::optim::Adam>(std::vector<torch::Tensor>{online_},
                                                  torch::optim::AdamOptions().eps(dqn.adam_epsilon));
     adam_->step();
-    online_.set_parameters(state.online);
-    target_.set_parameters(state.target);
     moments().exp_avg().copy_(view(state.mean_gradient));
     moments().exp_avg_sq().copy_(view(state.mean_squared_gradient));
     moments().step(static_cast<std::int64_t>(state.updates));
@@ -52,10 +48,10 @@ class TorchNetworks : public TdNetworks {
     const torch::Tensor next = all.narrow(1, shape_.observations, shape_.observations);
     {
       const torch::NoGradGuard no_gradient;
-      target_next_ = target_.forward(next).to(torch::kCPU).contiguous();
-      if (dqn_.double_q) online_next_ = online_.forward(next).to(torch::kCPU).contiguous();
+      target_next_ = q_values(target_, next).to(torch::kCPU).contiguous();
+      if (dqn_.double_q) online_next_ = q_values(online_, next).to(torch::kCPU).contiguous();
     }
-    online_q_ = online_.forward(all.narrow(1, 0, shape_.observations));
+    online_q_ = q_values(online_, all.narrow(1, 0, shape_.observations));
     host_q_ = online_q_.detach().to(torch::kCPU).contiguous();
     BatchQValues q;
     q.online = values(host_q_);
@@ -65,11 +61,10 @@ class TorchNetworks : public TdNetworks {
   }
 
   double step(std::span<const float> q_gradient, double learning_rate) override {
-    torch::Tensor& flat = online_.parameter_tensor();
-    flat.mutable_grad().zero_();
+    torch::Tensor& gradient = online_.mutable_grad();
+    gradient.zero_();
     online_q_.backward(view(q_gradient).view(online_q_.sizes()).to(device_));
     const torch::NoGradGuard no_gradient;
-    torch::Tensor& gradient = flat.mutable_grad();
     const double size = gradient.norm().item<double>();
     if (size > dqn_.gradient_norm_max) gradient.mul_(dqn_.gradient_norm_max / size);
     static_cast<torch::optim::AdamOptions&>(adam_->param_groups()[0].options()).lr(learning_rate);
@@ -79,17 +74,36 @@ class TorchNetworks : public TdNetworks {
 
   void copy_to_target() override {
     const torch::NoGradGuard no_gradient;
-    target_.parameter_tensor().copy_(online_.parameter_tensor());
+    target_.copy_(online_);
   }
 
-  std::vector<float> parameters() const override { return online_.parameters(); }
+  std::vector<float> parameters() const override { return copy(online_); }
 
   TdState state() const override {
-    return {online_.parameters(), target_.parameters(), copy(moments().exp_avg()),
-            copy(moments().exp_avg_sq()), static_cast<std::uint64_t>(moments().step())};
+    return {copy(online_), copy(target_), copy(moments().exp_avg()), copy(moments().exp_avg_sq()),
+            static_cast<std::uint64_t>(moments().step())};
   }
 
  private:
+  // [batch, actions] for observations [batch, observations]; differentiable in `parameters`.
+  torch::Tensor q_values(const torch::Tensor& parameters, const torch::Tensor& observations) const {
+    const auto apply = [&](const NetworkShape::Layer& layer, const torch::Tensor& inputs) {
+      const torch::Tensor weights = parameters.narrow(0, static_cast<std::int64_t>(layer.weights),
+                                                      layer.outputs * layer.inputs);
+      const torch::Tensor biases =
+          parameters.narrow(0, static_cast<std::int64_t>(layer.biases), layer.outputs);
+      return at::addmm(biases, inputs, weights.view({layer.outputs, layer.inputs}).t());
+    };
+    const std::vector<NetworkShape::Layer> layers = shape_.layers();
+    const std::size_t hidden_layers = shape_.hidden.size();
+    torch::Tensor hidden = observations;
+    for (std::size_t i = 0; i < hidden_layers; ++i) hidden = apply(layers[i], hidden).relu();
+    const torch::Tensor last = apply(layers.back(), hidden);  // advantages, if dueling
+    if (!shape_.dueling) return last;
+    const torch::Tensor value = apply(layers[hidden_layers], hidden);  // [batch, 1]
+    return last + (value - last.mean(1, /*keepdim=*/true));
+  }
+
   torch::optim::AdamParamState& moments() const {
     return static_cast<torch::optim::AdamParamState&>(*adam_->state().begin()->second);
   }
@@ -97,8 +111,8 @@ class TorchNetworks : public TdNetworks {
   NetworkShape shape_;
   DqnSettings dqn_;
   torch::Device device_;
-  QNetwork online_;
-  QNetwork target_;
+  torch::Tensor online_;
+  torch::Tensor target_;
   std::unique_ptr<torch::optim::Adam> adam_;
 
   // Of the last forward pass; all but online_q_ on the host.
@@ -110,8 +124,20 @@ class TorchNetworks : public TdNetworks {
 
 }  // namespace
 
+void check_device(Device device) {
+  if (device == Device::kCuda && !torch::cuda::is_available()) {
+    throw Failure(
+        "run.device is 'cuda', but LibTorch {} finds no CUDA device; set run.device = \"cpu\", or "
+        "build with a CUDA LibTorch (cmake -DCMAKE_PREFIX_PATH=/opt/libtorch)",
+        TORCH_VERSION);
+  }
+}
+
+void use_one_torch_thread() { at::set_num_threads(1); }
+
 std::unique_ptr<TdNetworks> torch_networks(const NetworkShape& shape, const DqnSettings& dqn,
                                            Device device, const TdState& state) {
+  check_device(device);
   return std::make_unique<TorchNetworks>(shape, dqn, device, state);
 }
 

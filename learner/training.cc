@@ -6,7 +6,6 @@
 #include <utility>
 #include <vector>
 
-#include "learner/torch_q_network.h"
 #include "proto/base/failure.h"
 #include "proto/run/checkpoints.h"
 #include "proto/system/log.h"
@@ -19,14 +18,6 @@ constexpr std::int64_t kStepsPerReport = 2500;
 
 double between(double first, double last, double progress) {
   return first + (last - first) * progress;
-}
-
-std::string list(const std::vector<std::uint32_t>& numbers) {
-  std::string text;
-  for (const std::uint32_t number : numbers) {
-    text += (text.empty() ? "" : ", ") + std::to_string(number);
-  }
-  return text;
 }
 
 }  // namespace
@@ -133,7 +124,7 @@ bool Training::await_selection(std::uint64_t round) {
       throw Failure(
           "round {}: actors {} have not reported their evaluation in {} min: see their "
           "logs, then resume the run",
-          round, list(around_.publisher.awaited(round)), kHangs.count());
+          round, fmt::join(around_.publisher.awaited(round), ", "), kHangs.count());
     }
     around_.publisher.service(kGlance);
     around_.time.charge(TimePart::kWaitForActors);

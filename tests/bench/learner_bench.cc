@@ -7,7 +7,6 @@
 
 #include "learner/td_networks.h"
 #include "learner/td_update.h"
-#include "learner/torch_q_network.h"
 #include "proto/base/random.h"
 #include "tests/bench/paper.h"
 #include "tests/bench/td_floor.h"

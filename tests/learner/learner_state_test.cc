@@ -3,7 +3,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "learner/torch_q_network.h"
 #include "learner/training.h"
 #include "proto/base/failure.h"
 #include "proto/base/json.h"

@@ -4,13 +4,18 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numeric>
 
 #include "learner/td_update.h"
-#include "learner/torch_q_network.h"
+#include "proto/base/failure.h"
 #include "proto/base/random.h"
 
 namespace corridor::learner {
 namespace {
+
+using testing::FloatNear;
+using testing::HasSubstr;
+using testing::Pointwise;
 
 double uniform(std::uint64_t index) { return random_unit(7, Purpose::kBootstrap, {index}); }
 
@@ -27,6 +32,58 @@ void expect_near(std::span<const float> actual, std::span<const float> expected,
   for (std::size_t i = 0; i < actual.size(); ++i) {
     ASSERT_NEAR(actual[i], expected[i], 1e-5 * std::max(1.0F, std::abs(expected[i])))
         << what << ' ' << i;
+  }
+}
+
+// The definition in proto/settings/transition.h, in plain doubles.
+std::vector<float> reference_forward(const NetworkShape& shape, const std::vector<float>& p,
+                                     std::vector<double> input) {
+  const auto apply = [&](const NetworkShape::Layer& layer, const std::vector<double>& x) {
+    std::vector<double> y;
+    for (int o = 0; o < layer.outputs; ++o) {
+      double sum = p[layer.biases + o];
+      for (int i = 0; i < layer.inputs; ++i) sum += p[layer.weights + o * layer.inputs + i] * x[i];
+      y.push_back(sum);
+    }
+    return y;
+  };
+  const std::vector<NetworkShape::Layer> layers = shape.layers();
+  for (std::size_t i = 0; i < shape.hidden.size(); ++i) {
+    input = apply(layers[i], input);
+    for (double& value : input) value = std::max(value, 0.0);
+  }
+  std::vector<double> q = apply(layers.back(), input);
+  if (shape.dueling) {
+    const double value = apply(layers[layers.size() - 2], input)[0];
+    const double mean = std::accumulate(q.begin(), q.end(), 0.0) / static_cast<double>(q.size());
+    for (double& action_value : q) action_value += value - mean;
+  }
+  return {q.begin(), q.end()};
+}
+
+TEST(TdNetworks, ComputeTheNetworkThatItsShapeDefines) {
+  for (const bool dueling : {false, true}) {
+    for (const std::vector<int>& hidden : {std::vector<int>{}, {7}, {8, 5}}) {
+      const NetworkShape shape{6, hidden, 4, dueling};
+      const RowLayout layout{shape.observations};
+      const std::vector<float> parameters = initial_parameters(shape, 3, Phase::kBp);
+      constexpr int kBatch = 3;
+      const std::vector<float> rows = numbers(kBatch * layout.stride(), 1);
+      std::vector<float> expected;
+      for (int row = 0; row < kBatch; ++row) {
+        const auto first = rows.begin() + static_cast<std::ptrdiff_t>(row * layout.stride());
+        const std::vector<float> q =
+            reference_forward(shape, parameters, {first, first + shape.observations});
+        expected.insert(expected.end(), q.begin(), q.end());
+      }
+      const TdState state = initial_td_state(parameters);
+      const auto by_hand = cpu_networks(shape, {}, state);
+      const auto by_torch = torch_networks(shape, {}, Device::kCpu, state);
+      for (TdNetworks* networks : {by_hand.get(), by_torch.get()}) {
+        EXPECT_THAT(networks->forward(rows, kBatch).online, Pointwise(FloatNear(1e-6f), expected))
+            << hidden.size() << " hidden layers, dueling " << dueling;
+      }
+    }
   }
 }
 
@@ -92,6 +149,15 @@ TEST(TorchNetworks, TakeOverAStateAndChangeNothingByIt) {
   state.updates = 12;
   EXPECT_EQ(torch_networks(shape, {}, Device::kCpu, state)->state(), state);
   EXPECT_EQ(cpu_networks(shape, {}, state)->state(), state);
+}
+
+TEST(TorchNetworks, RefuseADeviceThatIsNotThere) {
+  try {
+    torch_networks({2, {}, 2, false}, {}, Device::kCuda, initial_td_state(numbers(6, 0)));
+    GTEST_SKIP() << "it is there";
+  } catch (const Failure& failure) {
+    EXPECT_THAT(failure.what(), HasSubstr("finds no CUDA device"));
+  }
 }
 
 }  // namespace

@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "learner/td_loss.h"
-#include "learner/torch_q_network.h"
 #include "proto/base/failure.h"
 #include "proto/base/random.h"
 
@@ -297,12 +296,10 @@ TEST(TdUpdate, LearnsTheValuesOfAChain) {
     }
   }
   Batch batch;
-  std::vector<float> observations;
   const auto add_one_hot = [](std::vector<float>& out, int state) {
     for (int s = 0; s < kStates; ++s) out.push_back(s == state ? 1.0f : 0.0f);
   };
   for (int s = 0; s < kStates; ++s) {
-    add_one_hot(observations, s);
     for (int action = 0; action < 2; ++action) {
       const bool ends = action == 1 && s + 1 == kStates;
       const int next = action == 0 ? std::max(s - 1, 0) : s + 1;
@@ -319,12 +316,12 @@ TEST(TdUpdate, LearnsTheValuesOfAChain) {
     dqn.target_copy_updates = 50;
     TdUpdate update(shape, dqn, Device::kCpu, start(shape, dqn));
     for (int i = 0; i < 3000; ++i) update.update(batch, 3e-3);
-    QNetwork network(shape, Device::kCpu);
-    network.set_parameters(update.parameters());
-    const std::vector<float> q = network.forward(observations, kStates);
+    const auto trained = cpu_networks(shape, dqn, initial_td_state(update.parameters()));
+    const auto q = trained->forward(batch.rows, static_cast<int>(batch.weights.size())).online;
     for (int s = 0; s < kStates; ++s) {
-      EXPECT_NEAR(q[2 * s], exact[s][0], 0.02) << "state " << s << ", left";
-      EXPECT_NEAR(q[2 * s + 1], exact[s][1], 0.02) << "state " << s << ", right";
+      // Each state has two rows, of two actions each.
+      EXPECT_NEAR(q[4 * s], exact[s][0], 0.02) << "state " << s << ", left";
+      EXPECT_NEAR(q[4 * s + 1], exact[s][1], 0.02) << "state " << s << ", right";
     }
   }
 }
@@ -335,6 +332,31 @@ TEST(TdUpdate, RefusesRowsOfAnotherLength) {
   batch.rows.pop_back();
   EXPECT_THROW(update.update(batch, 1e-3), Failure);
   EXPECT_THROW(update.update(Batch{}, 1e-3), Failure);
+}
+
+TEST(InitialParameters, AreUniformWithinOneOverTheRootOfTheFanIn) {
+  const NetworkShape shape{100, {400}, 3, false};
+  const std::vector<float> parameters = initial_parameters(shape, 7, Phase::kMop);
+  ASSERT_EQ(parameters.size(), shape.parameters());
+  const std::vector<float> first(parameters.begin(), parameters.begin() + 100 * 400);
+  double sum = 0.0, squares = 0.0;
+  float largest = 0.0f;
+  for (const float value : first) {
+    sum += value;
+    squares += static_cast<double>(value) * value;
+    largest = std::max(largest, std::abs(value));
+  }
+  EXPECT_LE(largest, 0.1f);
+  EXPECT_GT(largest, 0.0999f);
+  EXPECT_NEAR(sum / 40'000, 0.0, 4 * 0.1 / std::sqrt(3 * 40'000));
+  EXPECT_NEAR(squares / 40'000, 0.01 / 3.0, 4 * 0.01 / std::sqrt(40'000.0) / 3.0);
+}
+
+TEST(InitialParameters, DependOnSeedAndPhaseOnly) {
+  const NetworkShape shape{4, {8}, 3, false};
+  EXPECT_EQ(initial_parameters(shape, 7, Phase::kMop), initial_parameters(shape, 7, Phase::kMop));
+  EXPECT_NE(initial_parameters(shape, 7, Phase::kMop), initial_parameters(shape, 8, Phase::kMop));
+  EXPECT_NE(initial_parameters(shape, 7, Phase::kMop), initial_parameters(shape, 7, Phase::kBp));
 }
 
 }  // namespace

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <fstream>
 
-#include "learner/torch_q_network.h"
 #include "proto/base/json.h"
 #include "proto/run/checkpoints.h"
 #include "proto/run/metrics.h"

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "learner/torch_q_network.h"
+#include "learner/td_update.h"
 #include "proto/base/random.h"
 
 namespace corridor::policy {
@@ -35,14 +35,15 @@ TEST_P(AgainstLibTorch, AgreesToRounding) {
   const NetworkShape shape = GetParam();
   const auto parameters = random_floats(shape.parameters(), 1, 0.3);
   QNetwork network(shape, parameters);
-  learner::QNetwork reference(shape, Device::kCpu);
-  reference.set_parameters(parameters);
+  const auto reference =
+      learner::torch_networks(shape, {}, Device::kCpu, learner::initial_td_state(parameters));
   constexpr int kBatch = 64;
-  const auto inputs = static_cast<std::size_t>(shape.observations);
-  const auto observations = random_floats(inputs * kBatch, 2, 1.0);
-  const std::vector<float> expected = reference.forward(observations, kBatch);
+  const std::size_t stride = RowLayout{shape.observations}.stride();
+  const auto rows = random_floats(stride * kBatch, 2, 1.0);
+  const std::span<const float> expected = reference->forward(rows, kBatch).online;
   for (std::size_t i = 0; i < kBatch; ++i) {
-    const auto q = network.q_values({observations.data() + i * inputs, inputs});
+    const auto q =
+        network.q_values({rows.data() + i * stride, static_cast<std::size_t>(shape.observations)});
     for (std::size_t a = 0; a < q.size(); ++a) {
       EXPECT_NEAR(q[a], expected[i * q.size() + a], 2e-6) << "row " << i << " action " << a;
     }
