@@ -13,22 +13,12 @@
 
 namespace corridor::replay {
 
-class Limiter {
- public:
-  explicit Limiter(const DqnSettings& settings);
+// Of `inserted` rows in this phase, those that count: from the one on that reaches the minimum.
+std::uint64_t counted_rows(const DqnSettings& settings, std::uint64_t inserted);
 
-  // Of `inserted` rows in this phase, those that count: from the one on that reaches the minimum.
-  std::uint64_t counted_rows(std::uint64_t inserted) const;
-
-  // Batches granted in all by the time `inserted` rows are in:
-  // floor(counted_rows * samples_per_insert / batch_size). Never falls. A block is granted the
-  // difference that its rows make.
-  std::uint64_t batches(std::uint64_t inserted) const;
-
- private:
-  double samples_per_insert_;
-  double batch_size_;
-  std::uint64_t minimum_;
-};
+// Batches granted in all by the time `inserted` rows are in:
+// floor(counted_rows * samples_per_insert / batch_size). Never falls. A block is granted the
+// difference that its rows make.
+std::uint64_t granted_batches(const DqnSettings& settings, std::uint64_t inserted);
 
 }  // namespace corridor::replay

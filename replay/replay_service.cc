@@ -1,13 +1,18 @@
 #include "replay/replay_service.h"
 
+#include <chrono>
+
 #include "proto/base/failure.h"
 #include "proto/run/checkpoints.h"
 #include "proto/run/metrics.h"
 #include "proto/settings/limits.h"
 #include "proto/wire/codec.h"
+#include "replay/limiter.h"
 
 namespace corridor::replay {
 namespace {
+
+namespace fs = std::filesystem;
 
 template <typename... Args>
 Refused refused(fmt::format_string<Args...> format, Args&&... args) {
@@ -20,13 +25,11 @@ ReplayService::ReplayService(const RunConfig& config)
     : config_(config),
       schedule_(config),
       admission_(static_cast<std::size_t>(config.run.actors)),
-      store_(config.phase(phase_), layout(phase_), config.run.seed, phase_, 0),
-      limiter_(config.phase(phase_)) {}
+      store_(config.phase(phase_), layout(phase_), config.run.seed, phase_, 0) {}
 
 void ReplayService::begin(Phase phase, std::uint64_t first_key) {
   phase_ = phase;
   store_ = Store(config_.phase(phase), layout(phase), config_.run.seed, phase, first_key);
-  limiter_ = Limiter(config_.phase(phase));
 }
 
 Outcome ReplayService::handle(ClientId client, ReplayRequest request) {
@@ -95,9 +98,10 @@ std::optional<Opened> ReplayService::try_open() {
   const Phase phase = schedule_.phase_of(next_round());
   if (phase != phase_) begin(phase, store_.next_key());
 
-  const std::uint64_t granted = limiter_.batches(store_.inserted());
+  const DqnSettings& dqn = config_.phase(phase_);
+  const std::uint64_t granted = granted_batches(dqn, store_.inserted());
   for (const Insert& chunk : admission_.admit()) store_.insert(chunk.rows, chunk.priorities);
-  const std::uint64_t batches = limiter_.batches(store_.inserted()) - granted;
+  const std::uint64_t batches = granted_batches(dqn, store_.inserted()) - granted;
   CORRIDOR_CHECK(batches <= UINT32_MAX, "{} batches", batches);
   waits_ = false;
   open_ = true;
@@ -136,10 +140,15 @@ Outcome ReplayService::answer(ClientId, const Save& request) {
   if (waits_) return refused("a checkpoint wanted while block {} is to open", next_round());
   open_ = false;
   try {
-    if (!writer_ || writer_->directory() != request.directory) {
-      writer_.emplace(snapshot(request.previous), request.directory, request.previous);
+    if (saved_in_ != request.directory) {
+      saving_ = std::async(std::launch::async, write, snapshot(request.previous),
+                           fs::path(request.directory), fs::path(request.previous));
+      saved_in_ = request.directory;
     }
-    return Saved{writer_->complete()};
+    if (!saving_.valid()) return Saved{true};
+    if (saving_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return Saved{false};
+    saving_.get();
+    return Saved{true};
   } catch (const Failure& failure) {
     return Refused{failure.what()};
   }
@@ -151,7 +160,7 @@ std::vector<std::uint32_t> ReplayService::awaited() const {
 
 std::vector<std::pair<std::string, double>> ReplayService::metrics() const {
   const auto value = [](std::uint64_t count) { return static_cast<double>(count); };
-  const std::uint64_t counted = limiter_.counted_rows(store_.inserted());
+  const std::uint64_t counted = counted_rows(config_.phase(phase_), store_.inserted());
   return {
       {metric::kReplaySize, value(store_.size())},
       {metric::kReplayInserted, value(store_.inserted())},
@@ -160,7 +169,7 @@ std::vector<std::pair<std::string, double>> ReplayService::metrics() const {
       {metric::kStalePriorities, value(store_.stale_priorities())}};
 }
 
-Snapshot ReplayService::snapshot(const std::filesystem::path& previous) const {
+Snapshot ReplayService::snapshot(const fs::path& previous) const {
   Snapshot result;
   admission_.save(result.head);
   store_.save(result.head);
@@ -190,7 +199,7 @@ void ReplayService::load_head(const TensorFile& head, const std::string& name) {
   open_ = false;
 }
 
-void ReplayService::load(const std::filesystem::path& checkpoint) {
+void ReplayService::load(const fs::path& checkpoint) {
   load_head(read_checkpoint_file(checkpoint, kReplayFile), (checkpoint / kReplayFile).string());
   const std::vector<RowsFile> files = rows_files(checkpoint);
   const bool covers = files.empty() ? store_.size() == 0

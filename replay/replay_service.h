@@ -9,6 +9,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <future>
 #include <optional>
 #include <string>
 #include <utility>
@@ -20,7 +21,6 @@
 #include "proto/wire/endpoint.h"
 #include "proto/wire/messages.h"
 #include "replay/admission.h"
-#include "replay/limiter.h"
 #include "replay/snapshot.h"
 #include "replay/store.h"
 
@@ -77,7 +77,7 @@ class ReplayService {
   Outcome answer(ClientId client, const Save& request);
 
   RowLayout layout(Phase phase) const { return {config_.shape(phase).observations}; }
-  // An empty store and the limiter of the phase.
+  // An empty store.
   void begin(Phase phase, std::uint64_t first_key);
 
   RunConfig config_;
@@ -85,10 +85,10 @@ class ReplayService {
   Admission admission_;
   Phase phase_ = Phase::kMop;  // of the store
   Store store_;
-  Limiter limiter_;
-  bool waits_ = false;  // an OpenBlock for next_round()
-  bool open_ = false;   // block next_round() - 1 is
-  std::optional<SnapshotWriter> writer_;
+  bool waits_ = false;              // an OpenBlock for next_round()
+  bool open_ = false;               // block next_round() - 1 is
+  std::filesystem::path saved_in_;  // the newest checkpoint asked for
+  std::future<void> saving_;        // the thread that writes it; none once it is done
 };
 
 }  // namespace corridor::replay

@@ -2,7 +2,6 @@
 
 #include <chrono>
 #include <optional>
-#include <string>
 #include <utility>
 
 #include "proto/settings/schedule.h"
@@ -76,9 +75,8 @@ class Loop {
       server_.reply(*opening_, encode(*opened));
       opening_.reset();
     } else if (hooks_.clock() - opening_since_ > kSilence) {
-      std::string actors;
-      for (const std::uint32_t actor : service_.awaited()) actors += fmt::format(" {}", actor);
-      log_info("block {} waits for the chunks of actors{}", service_.next_round(), actors);
+      log_info("block {} waits for the chunks of actors {}", service_.next_round(),
+               fmt::join(service_.awaited(), " "));
       opening_since_ = hooks_.clock();
     }
   }

@@ -1,8 +1,5 @@
 #include "replay/snapshot.h"
 
-#include <chrono>
-#include <utility>
-
 #include "proto/base/failure.h"
 #include "proto/run/run_directory.h"
 #include "proto/system/files.h"
@@ -34,20 +31,6 @@ void write(const Snapshot& snapshot, const fs::path& directory, const fs::path& 
     write_tensors(directory / place.name(), file);
   }
   write_tensors(directory / kReplayFile, snapshot.head);
-}
-
-SnapshotWriter::SnapshotWriter(Snapshot snapshot, fs::path directory, fs::path previous)
-    : directory_(std::move(directory)),
-      writing_(
-          std::async(std::launch::async,
-                     [snapshot = std::move(snapshot), directory = directory_,
-                      previous = std::move(previous)] { write(snapshot, directory, previous); })) {}
-
-bool SnapshotWriter::complete() {
-  if (!writing_.valid()) return true;
-  if (writing_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return false;
-  writing_.get();
-  return true;
 }
 
 }  // namespace corridor::replay

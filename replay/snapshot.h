@@ -1,9 +1,8 @@
-// The replay's part of a checkpoint (proto/run/checkpoints.h), and the thread that writes it.
+// The replay's part of a checkpoint (proto/run/checkpoints.h).
 #pragma once
 
 #include <cstddef>
 #include <filesystem>
-#include <future>
 #include <vector>
 
 #include "proto/run/checkpoints.h"
@@ -25,20 +24,5 @@ struct Snapshot {
 // Failure.
 void write(const Snapshot& snapshot, const std::filesystem::path& directory,
            const std::filesystem::path& previous);
-
-// `write` in a thread of its own. The destructor waits for it.
-class SnapshotWriter {
- public:
-  SnapshotWriter(Snapshot snapshot, std::filesystem::path directory,
-                 std::filesystem::path previous);
-
-  const std::filesystem::path& directory() const { return directory_; }
-  // Throws the Failure of `write`, once.
-  bool complete();
-
- private:
-  std::filesystem::path directory_;
-  std::future<void> writing_;
-};
 
 }  // namespace corridor::replay

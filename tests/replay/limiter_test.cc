@@ -16,21 +16,21 @@ DqnSettings settings(std::int64_t minimum_size, double samples_per_insert, int b
 }
 
 TEST(LimiterTest, GrantsNothingBeforeTheMinimumAndNoBurstAtIt) {
-  const Limiter limiter(settings(1000, 32.0, 64));
-  EXPECT_EQ(limiter.batches(999), 0U);
+  const DqnSettings dqn = settings(1000, 32.0, 64);
+  EXPECT_EQ(granted_batches(dqn, 999), 0U);
   // Half a batch a row: the thousandth row is the first that counts.
-  EXPECT_EQ(limiter.batches(1000), 0U);
-  EXPECT_EQ(limiter.batches(1001), 1U);
-  EXPECT_EQ(limiter.batches(1511), 256U);
+  EXPECT_EQ(granted_batches(dqn, 1000), 0U);
+  EXPECT_EQ(granted_batches(dqn, 1001), 1U);
+  EXPECT_EQ(granted_batches(dqn, 1511), 256U);
 }
 
 TEST(LimiterTest, UnevenInsertsGiveExactlyTheAskedRatio) {
-  const Limiter limiter(settings(5000, 32.0, 64));
+  const DqnSettings dqn = settings(5000, 32.0, 64);
   std::uint64_t inserted = 0;
   std::uint64_t granted = 0;
   for (std::uint64_t round = 0; round < 10'000; ++round) {
     inserted += random_below(700, 3, Purpose::kBootstrap, {round});
-    const std::uint64_t total = limiter.batches(inserted);
+    const std::uint64_t total = granted_batches(dqn, inserted);
     ASSERT_GE(total, granted);
     granted = total;
     const std::uint64_t counted = inserted < 5000 ? 0 : inserted - 4999;
@@ -40,16 +40,16 @@ TEST(LimiterTest, UnevenInsertsGiveExactlyTheAskedRatio) {
 }
 
 TEST(LimiterTest, AFractionalRatioIsKeptInTheLongRun) {
-  const Limiter limiter(settings(1, 0.7, 48));
+  const DqnSettings dqn = settings(1, 0.7, 48);
   // The 48th row is the first that a whole batch can be drawn with.
-  EXPECT_EQ(limiter.counted_rows(7'000'047), 7'000'000U);
-  EXPECT_NEAR(static_cast<double>(limiter.batches(7'000'047)) * 48 / 7e6, 0.7, 48 / 7e6);
+  EXPECT_EQ(counted_rows(dqn, 7'000'047), 7'000'000U);
+  EXPECT_NEAR(static_cast<double>(granted_batches(dqn, 7'000'047)) * 48 / 7e6, 0.7, 48 / 7e6);
 }
 
 TEST(LimiterTest, WaitsForAWholeBatchEvenIfTheMinimumIsSmaller) {
-  const Limiter limiter(settings(0, 32.0, 64));
-  EXPECT_EQ(limiter.batches(63), 0U);
-  EXPECT_EQ(limiter.batches(65), 1U);
+  const DqnSettings dqn = settings(0, 32.0, 64);
+  EXPECT_EQ(granted_batches(dqn, 63), 0U);
+  EXPECT_EQ(granted_batches(dqn, 65), 1U);
 }
 
 }  // namespace
