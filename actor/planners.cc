@@ -5,8 +5,7 @@
 #include "actor/driving/fixed_bp.h"
 #include "actor/driving/observation.h"
 #include "actor/driving/random_bp.h"
-#include "actor/driving/rules_bp.h"
-#include "actor/driving/rules_mop.h"
+#include "actor/driving/rules.h"
 #include "actor/driving/shield.h"
 #include "actor/driving/skills.h"
 

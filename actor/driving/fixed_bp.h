@@ -11,9 +11,13 @@ namespace corridor::driving {
 // The same at every step, where it is feasible. `skills` outlives it.
 class FixedBp : public BehaviourPlanner {
  public:
-  FixedBp(Command command, const DrivingSettings& settings, Skills skills = kSkills);
+  FixedBp(Command command, const DrivingSettings& settings, Skills skills = kSkills)
+      : command_(command), settings_(settings), skills_(skills) {}
+
   void begin_episode(std::uint64_t) override {}
-  Command decide(const Situation& situation) override;
+  Command decide(const Situation& situation) override {
+    return feasible(command_, situation.scene.ego, settings_, skills_);
+  }
 
  private:
   Command command_;

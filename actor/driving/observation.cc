@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "actor/driving/clearance.h"
+#include "actor/driving/prediction.h"
 #include "proto/base/failure.h"
 
 namespace corridor::driving {

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "actor/driving/corridors.h"
-#include "actor/driving/preprocessing.h"
 #include "actor/driving/scene.h"
+#include "actor/driving/skills.h"
 
 namespace corridor::driving {
 
@@ -23,7 +23,7 @@ namespace corridor::driving {
 //   3 + 5 c + 2        front gap's rate (0 where closed)
 //   3 + 5 c + 3        back gap
 //   3 + 5 c + 4        back gap's rate
-//   3 + 5 N + i        the i-th predicted clearance (actor/driving/clearance.h) / 2 m, in [-1, 1]
+//   3 + 5 N + i        the i-th predicted clearance (actor/driving/prediction.h) / 2 m, in [-1, 1]
 struct MopIndex {
   static constexpr int kSpeed = 0;
   static constexpr int kSetPoint = 1;

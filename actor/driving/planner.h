@@ -6,8 +6,8 @@
 
 #include "actor/driving/action.h"
 #include "actor/driving/corridors.h"
-#include "actor/driving/preprocessing.h"
 #include "actor/driving/scene.h"
+#include "actor/driving/skills.h"
 
 namespace corridor::driving {
 

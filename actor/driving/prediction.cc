@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 
 #include "actor/driving/trajectory.h"
 
@@ -31,6 +32,28 @@ double separation_m(const Ego& ego, const Vehicle& other, const EgoSettings& siz
                                   ego.s_m - size.length_m - other.s_m);  // or behind
   const double across_m = std::abs(ego.d_m - other.d_m) - (size.width_m + other.width_m) / 2;
   return std::max(along_m, across_m);
+}
+
+void predicted_clearances_m(const Scene& scene, const DrivingSettings& settings,
+                            std::span<double> out) {
+  const int speed_changes[] = {0, unchanged_speed(settings)};
+  std::size_t next = 0;
+  for (int corridor_change = -1; corridor_change <= 1; ++corridor_change) {
+    for (const int speed_change : speed_changes) {
+      Ego ego = scene.ego;
+      for (int step = 1; step <= settings.planner.clearance_steps; ++step) {
+        ego = after_step(ego, MopAction{corridor_change, speed_change}, settings);
+        const double time_s = step * settings.step_s;
+        double nearest_m = kClearanceMax_m;
+        for (Vehicle other : scene.others) {
+          other.s_m += other.speed_mps * time_s;
+          other.d_m += other.lateral_speed_mps * time_s;
+          nearest_m = std::min(nearest_m, separation_m(ego, other, settings.ego));
+        }
+        out[next++] = nearest_m;
+      }
+    }
+  }
 }
 
 }  // namespace corridor::driving

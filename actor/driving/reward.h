@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "actor/driving/corridors.h"
-#include "actor/driving/preprocessing.h"
 #include "actor/driving/scene.h"
+#include "actor/driving/skills.h"
 
 namespace corridor::driving {
 

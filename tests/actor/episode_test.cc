@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "actor/driving/fixed_bp.h"
-#include "actor/driving/rules_mop.h"
+#include "actor/driving/rules.h"
 #include "tests/actor/driving/more_skills.h"
 #include "tests/support/fake_world.h"
 

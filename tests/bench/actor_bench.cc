@@ -4,8 +4,7 @@
 #include <map>
 #include <string>
 
-#include "actor/driving/rules_bp.h"
-#include "actor/driving/rules_mop.h"
+#include "actor/driving/rules.h"
 #include "actor/episode.h"
 #include "actor/policy/action_values.h"
 #include "actor/world/sumo_world.h"

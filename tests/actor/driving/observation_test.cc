@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "actor/driving/clearance.h"
+#include "actor/driving/prediction.h"
 #include "actor/driving/skills.h"
 #include "proto/settings/transition.h"
 #include "tests/actor/driving/scenes.h"
