@@ -3,7 +3,7 @@
 #include "actor/driving/observation.h"
 #include "actor/driving/reward.h"
 #include "actor/planners.h"
-#include "actor/world/traffic_distribution.h"
+#include "actor/world/traffic.h"
 #include "proto/base/failure.h"
 
 namespace corridor::actor {

@@ -33,20 +33,20 @@ void initialise_ode() {
   CORRIDOR_CHECK(initialised != 0, "dInitODE2");
 }
 
-}  // namespace
-
-class OdeVehicle::Simulation {
+class OdeVehicle final : public Vehicle {
  public:
-  Simulation(const CarModel& car, const TyreModel& tyre, double time_step_s)
+  OdeVehicle(const CarModel& car, const TyreModel& tyre, double time_step_s)
       : car_(car), tyre_(tyre), time_step_s_(time_step_s) {
     CORRIDOR_CHECK(time_step_s > 0.0, "{} s", time_step_s);
     initialise_ode();
     place({});
   }
-  ~Simulation() { clear(); }
+  ~OdeVehicle() override { clear(); }
+  OdeVehicle(const OdeVehicle&) = delete;
+  OdeVehicle& operator=(const OdeVehicle&) = delete;
 
   // A new world each time: nothing of what was is left, not even the order of ODE's lists.
-  void place(const VehicleState& start) {
+  void place(const VehicleState& start) override {
     clear();
     world_ = dWorldCreate();
     contacts_ = dJointGroupCreate(0);
@@ -92,7 +92,15 @@ class OdeVehicle::Simulation {
     }
   }
 
-  void step() {
+  void set_steering_angle(double angle_rad) override {
+    steering_target_rad_ = std::clamp(angle_rad, -car_.steering_max_rad, car_.steering_max_rad);
+  }
+  void set_cruising_speed(double speed_mps) override { cruising_speed_mps_ = speed_mps; }
+  void set_brake_intensity(double share) override { brake_ = std::clamp(share, 0.0, 1.0); }
+
+  double time_step_s() const override { return time_step_s_; }
+
+  void step() override {
     const double lag_radps =
         std::clamp(car_.steering_gain_per_s * (steering_target_rad_ - steering_rad_),
                    -car_.steering_rate_max_radps, car_.steering_rate_max_radps);
@@ -107,7 +115,7 @@ class OdeVehicle::Simulation {
     dJointGroupEmpty(contacts_);
   }
 
-  VehicleState state() const {
+  VehicleState state() const override {
     const dReal* centre = dBodyGetPosition(body_);
     const dReal* velocity = dBodyGetLinearVel(body_);
     const dReal* rotation = dBodyGetRotation(body_);
@@ -123,13 +131,6 @@ class OdeVehicle::Simulation {
             yaw_rate_radps,
             steering_rad_};
   }
-
-  const CarModel car_;
-  const TyreModel tyre_;
-  const double time_step_s_;
-  double steering_target_rad_ = 0.0;
-  double cruising_speed_mps_ = 0.0;
-  double brake_ = 0.0;
 
  private:
   struct Wheel {
@@ -252,34 +253,24 @@ class OdeVehicle::Simulation {
     contact.surface.motion2 = sliding_mps - force.per_load / slope * rolling_mps;
   }
 
+  const CarModel car_;
+  const TyreModel tyre_;
+  const double time_step_s_;
   dWorldID world_ = nullptr;
   dJointGroupID contacts_ = nullptr;
   dBodyID body_ = nullptr;
   std::array<Wheel, kWheels> wheels_;
   double steering_rad_ = 0.0;
+  double steering_target_rad_ = 0.0;
+  double cruising_speed_mps_ = 0.0;
+  double brake_ = 0.0;
 };
 
-OdeVehicle::OdeVehicle(const CarModel& car, const TyreModel& tyre, double time_step_s)
-    : simulation_(std::make_unique<Simulation>(car, tyre, time_step_s)) {}
-OdeVehicle::~OdeVehicle() = default;
+}  // namespace
 
-void OdeVehicle::place(const VehicleState& start) { simulation_->place(start); }
-
-void OdeVehicle::set_steering_angle(double angle_rad) {
-  const double most_rad = simulation_->car_.steering_max_rad;
-  simulation_->steering_target_rad_ = std::clamp(angle_rad, -most_rad, most_rad);
+std::unique_ptr<Vehicle> make_ode_vehicle(const CarModel& car, const TyreModel& tyre,
+                                          double time_step_s) {
+  return std::make_unique<OdeVehicle>(car, tyre, time_step_s);
 }
-
-void OdeVehicle::set_cruising_speed(double speed_mps) {
-  simulation_->cruising_speed_mps_ = speed_mps;
-}
-
-void OdeVehicle::set_brake_intensity(double share) {
-  simulation_->brake_ = std::clamp(share, 0.0, 1.0);
-}
-
-double OdeVehicle::time_step_s() const { return simulation_->time_step_s_; }
-void OdeVehicle::step() { simulation_->step(); }
-VehicleState OdeVehicle::state() const { return simulation_->state(); }
 
 }  // namespace corridor::vehicle

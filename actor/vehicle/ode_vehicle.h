@@ -17,25 +17,8 @@
 
 namespace corridor::vehicle {
 
-class OdeVehicle : public Vehicle {
- public:
-  // A step of 2 ms for slip tyres, of up to 10 ms for Webots'.
-  OdeVehicle(const CarModel& car, const TyreModel& tyre, double time_step_s);
-  ~OdeVehicle() override;
-  OdeVehicle(const OdeVehicle&) = delete;
-  OdeVehicle& operator=(const OdeVehicle&) = delete;
-
-  void place(const VehicleState& start) override;
-  void set_steering_angle(double angle_rad) override;
-  void set_cruising_speed(double speed_mps) override;
-  void set_brake_intensity(double share) override;
-  double time_step_s() const override;
-  void step() override;
-  VehicleState state() const override;
-
- private:
-  class Simulation;
-  std::unique_ptr<Simulation> simulation_;
-};
+// A step of 2 ms for slip tyres, of up to 10 ms for Webots'.
+std::unique_ptr<Vehicle> make_ode_vehicle(const CarModel& car, const TyreModel& tyre,
+                                          double time_step_s);
 
 }  // namespace corridor::vehicle

@@ -4,8 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "actor/world/measurement.h"
-
 namespace corridor::world {
 namespace {
 

@@ -292,9 +292,7 @@ void SumoWorld::add(const Entrance& entrance) {
     SumoVehicle::setLaneChangeMode(id, kNoLaneChanges);
     new_objects_.push_back(entrance.vehicle);
   }
-  const auto place =
-      std::lower_bound(scene_.others.begin(), scene_.others.end(), entrance.vehicle.id,
-                       [](const Vehicle& vehicle, int wanted) { return vehicle.id < wanted; });
+  const auto place = std::ranges::lower_bound(scene_.others, entrance.vehicle.id, {}, &Vehicle::id);
   scene_.others.insert(place, entrance.vehicle);
 }
 

@@ -41,6 +41,15 @@ enum Draw : std::uint64_t {
 // What an object's random numbers are for: with its index, the counters of Purpose::kObject.
 enum ObjectDraw : std::uint64_t { kObjectPlace = 0, kObjectLane = 1, kObjectSide = 2 };
 
+// What an episode's own random number is for: with the episode seed, the counter of
+// Purpose::kTrainingTraffic.
+enum Quantity : std::uint64_t {
+  kSlowShare = 0,
+  kSpeedFactorMean = 1,
+  kBlindRate = 2,
+  kObjects = 3,
+};
+
 }  // namespace
 
 Traffic::Traffic(const TrafficScenario& scenario, std::uint64_t episode_seed)
@@ -280,6 +289,25 @@ Vehicle Traffic::as_vehicle(const driving::Ego& ego) const {
           ego.lateral_speed_mps,
           scenario_.ego.length_m,
           scenario_.ego.width_m};
+}
+
+TrafficSettings draw_traffic(const TrafficSettings& traffic,
+                             const TrafficDistribution& distribution, std::uint64_t episode_seed) {
+  TrafficSettings result = traffic;
+  const auto draw = [&](Quantity quantity, const std::vector<double>& range, double& value) {
+    if (range.empty()) return;
+    const double share = random_unit(episode_seed, Purpose::kTrainingTraffic, {quantity});
+    value = range[0] + share * (range[1] - range[0]);
+  };
+  draw(kSlowShare, distribution.slow_share, result.slow_share);
+  draw(kSpeedFactorMean, distribution.speed_factor_mean, result.speed_factor_mean);
+  draw(kBlindRate, distribution.blind_rate_per_s, result.blind_rate_per_s);
+  draw(kObjects, distribution.objects_per_km, result.objects_per_km);
+  if (!distribution.vehicles.empty()) {  // which Traffic draws from once an episode
+    result.vehicles_min = distribution.vehicles[0];
+    result.vehicles_max = distribution.vehicles[1];
+  }
+  return result;
 }
 
 }  // namespace corridor::world

@@ -103,4 +103,11 @@ class Traffic {
   std::map<int, std::uint64_t> blind_until_;  // id -> step at which it sees again
 };
 
+// The traffic of one training episode: `traffic`, with the episode's own values for what
+// `distribution` says, so that planners learn to drive in more than one kind (domain randomisation,
+// Tobin et al. 2017). What SUMO's vehicle types hold (sizes, keep_right) is the run's and the same
+// for all.
+TrafficSettings draw_traffic(const TrafficSettings& traffic,
+                             const TrafficDistribution& distribution, std::uint64_t episode_seed);
+
 }  // namespace corridor::world

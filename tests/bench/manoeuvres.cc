@@ -51,8 +51,8 @@ void drive(const char* name, const vehicle::TyreModel& tyre, double step_s,
   config.planner.corridor_change_s = corridor_change_s;
   const vehicle::CarModel car = vehicle::bmw_x5();
   world::DynamicMotion motion(
-      std::make_unique<Printed>(std::make_unique<vehicle::OdeVehicle>(car, tyre, step_s)), car,
-      tyre, config.dynamics, config.road, config.ego);
+      std::make_unique<Printed>(vehicle::make_ode_vehicle(car, tyre, step_s)), car, tyre,
+      config.dynamics, config.road, config.ego);
   driving::Ego ego;
   ego.d_m = kLaneMiddle_m;
   ego.speed_mps = kSpeed_mps;

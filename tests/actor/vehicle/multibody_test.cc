@@ -67,7 +67,8 @@ Trace read(const std::string& name) {
 // Of the second period on, when what the start does is over.
 double peak_ratio(const std::string& name, double speed_mps) {
   const Trace trace = read(name);
-  OdeVehicle car(bmw_320i(), slip_tyre(kFriction), kStep_s);
+  const auto owned = make_ode_vehicle(bmw_320i(), slip_tyre(kFriction), kStep_s);
+  Vehicle& car = *owned;
   car.place({.speed_mps = speed_mps});
   const auto steps = std::lround(kTraceStep_s / kStep_s);
   drive(car, 1.0);  // the suspension settles

@@ -26,7 +26,9 @@ const Kind kSnow{"snow", slip_tyre(0.3), 0.002};
 
 class OdeVehicleOf : public testing::TestWithParam<Kind> {
  protected:
-  OdeVehicle car_{bmw_x5(), GetParam().tyre, GetParam().step_s};
+  const std::unique_ptr<Vehicle> owned_ =
+      make_ode_vehicle(bmw_x5(), GetParam().tyre, GetParam().step_s);
+  Vehicle& car_ = *owned_;
 };
 INSTANTIATE_TEST_SUITE_P(, OdeVehicleOf, testing::Values(kRigid, kDry, kWet, kSnow),
                          [](const auto& kind) { return kind.param.name; });
@@ -89,7 +91,7 @@ TEST_P(OdeVehicleOf, TurnsToTheSideThatItIsSteeredTo) {
 }
 
 TEST_P(OdeVehicleOf, IsTheSameToTheLastBitWhateverWasBefore) {
-  const auto state_after = [&](OdeVehicle& car) {
+  const auto state_after = [&](Vehicle& car) {
     car.place({.x_m = 3.0, .y_m = 1.6, .yaw_rad = 0.01, .speed_mps = 12.0});
     for (int i = 0; i < 50; ++i) {
       car.set_steering_angle(0.01 * std::sin(i));
@@ -104,12 +106,13 @@ TEST_P(OdeVehicleOf, IsTheSameToTheLastBitWhateverWasBefore) {
   const auto first = state_after(car_);
   drive(car_, 1.7);
   EXPECT_EQ(state_after(car_), first);
-  OdeVehicle other(bmw_x5(), GetParam().tyre, GetParam().step_s);
-  EXPECT_EQ(state_after(other), first);
+  const auto other = make_ode_vehicle(bmw_x5(), GetParam().tyre, GetParam().step_s);
+  EXPECT_EQ(state_after(*other), first);
 }
 
 double peak_ratio(const Kind& kind, double speed_mps, double amplitude_rad) {
-  OdeVehicle car(bmw_x5(), kind.tyre, kind.step_s);
+  const auto owned = make_ode_vehicle(bmw_x5(), kind.tyre, kind.step_s);
+  Vehicle& car = *owned;
   car.place({.speed_mps = speed_mps});
   drive(car, 2.0);
   SingleTrack reference(bmw_x5(), slip_tyre(1.0).stiffness, speed_mps);
@@ -139,13 +142,14 @@ TEST(OdeVehicle, YawsAsTheSingleTrackModel) {
 TEST(OdeVehicle, SlidesOnSnow) { EXPECT_LT(peak_ratio(kSnow, 13.9, 0.06), 0.9); }
 
 TEST(OdeVehicle, ThePriusIsAnotherCar) {
-  OdeVehicle x5(bmw_x5(), kRigidTyre, 0.01), prius(toyota_prius(), kRigidTyre, 0.01);
-  for (OdeVehicle* car : {&x5, &prius}) {
+  const auto x5 = make_ode_vehicle(bmw_x5(), kRigidTyre, 0.01);
+  const auto prius = make_ode_vehicle(toyota_prius(), kRigidTyre, 0.01);
+  for (Vehicle* car : {x5.get(), prius.get()}) {
     car->place({.speed_mps = 5.0});
     car->set_cruising_speed(13.0);
     drive(*car, 2.0);
   }
-  EXPECT_GT(x5.state().speed_mps, prius.state().speed_mps + 1.0);
+  EXPECT_GT(x5->state().speed_mps, prius->state().speed_mps + 1.0);
 }
 
 }  // namespace

@@ -35,7 +35,8 @@ struct LaneChange {
 // The largest lateral error of the centre of mass.
 double largest_error_m(const TyreModel& tyre, double step_s, double speed_mps, double duration_s) {
   const CarModel model = bmw_x5();
-  OdeVehicle car(model, tyre, step_s);
+  const auto owned = make_ode_vehicle(model, tyre, step_s);
+  Vehicle& car = *owned;
   const PathTracker tracker(model, tyre, kPeriod_s);
   const LaneChange change{duration_s};
   const double to_centre_m = model.wheelbase_m * model.front_axle_share();

@@ -45,8 +45,8 @@ TEST(WebotsVehicle, IsPlacedAnywhereAtSpeed) {
 TEST(WebotsVehicle, DrivesAsTheCarItIs) {
   webots::Car webots;
   WebotsVehicle car(webots);
-  OdeVehicle same(bmw_x5(), kRigidTyre, 0.01);
-  for (Vehicle* vehicle : {static_cast<Vehicle*>(&car), static_cast<Vehicle*>(&same)}) {
+  const auto same = make_ode_vehicle(bmw_x5(), kRigidTyre, 0.01);
+  for (Vehicle* vehicle : {static_cast<Vehicle*>(&car), same.get()}) {
     vehicle->place(kStart);
     vehicle->set_cruising_speed(kStart.speed_mps);
     drive(*vehicle, 1.0);
@@ -58,9 +58,9 @@ TEST(WebotsVehicle, DrivesAsTheCarItIs) {
     vehicle->set_brake_intensity(0.3);
     drive(*vehicle, 0.5);
   }
-  EXPECT_GT(same.state().y_m, kStart.y_m + 1.0);  // to the left
-  EXPECT_LT(same.state().speed_mps, 10.5);
-  expect_near(car.state(), same.state(), 0.05);
+  EXPECT_GT(same->state().y_m, kStart.y_m + 1.0);  // to the left
+  EXPECT_LT(same->state().speed_mps, 10.5);
+  expect_near(car.state(), same->state(), 0.05);
 }
 
 TEST(WebotsVehicle, IsKeptOnItsPathByTheTracker) {

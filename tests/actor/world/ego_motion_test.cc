@@ -7,8 +7,6 @@
 #include <tuple>
 #include <vector>
 
-#include "actor/world/measurement.h"
-
 namespace corridor::world {
 namespace {
 

@@ -1,6 +1,6 @@
 // The part of Webots' C++ API that actor/vehicle/webots_vehicle uses, with the same names, signs
 // and units (Car.hpp, Driver.hpp, Supervisor.hpp, Node.hpp, Field.hpp, which there are five files),
-// over an OdeVehicle in place of a Webots.
+// over a car in ODE in place of a Webots.
 #pragma once
 
 #include <memory>
@@ -37,7 +37,7 @@ class Node {
   friend class Car;
   explicit Node(double time_step_s);
 
-  corridor::vehicle::OdeVehicle car_;
+  const std::unique_ptr<corridor::vehicle::Vehicle> car_;
   mutable Field translation_, rotation_;
   mutable double position_[3] = {}, orientation_[9] = {}, velocity_[6] = {};
 };
