@@ -6,9 +6,11 @@
 #include <optional>
 
 #include "actor/driving/action.h"
+#include "actor/escape_search.h"
 #include "actor/redrive.h"
 #include "actor/what_if.h"
 #include "proto/base/failure.h"
+#include "proto/run/evaluation_record.h"
 #include "proto/settings/collision_kinds.h"
 #include "proto/system/program.h"
 
@@ -82,8 +84,8 @@ class Recording {
         steps_(static_cast<int>(recorded.summary.steps)),
         episode_(config, world) {}
 
-  // Drives it whole and fills in what it came to; then again up to `actions` before the collision.
-  void drive(int actions, Hindsight& result) {
+  // Drives it whole and says what it came to; then again up to `actions` before the collision.
+  CollisionHindsight drive(int actions) {
     std::vector<Scene> seen;
     drive_as_recorded(episode_, recorded_, start_of(recorded_),
                       [&] { seen.push_back(episode_.scene()); });
@@ -93,11 +95,14 @@ class Recording {
       throw Failure("{} ends without a collision", recorded_.name().text());
     }
     collision_ = *episode_.summary().collision;
-    result.collision = collision_;
-    result.step = steps_;
-    result.actions_in_sight = actions_in_sight(seen, collision_, settings_.ego);
     episode_.begin(start_of(recorded_));
     drive_up_to(steps_ - actions);
+    CollisionHindsight result;
+    result.episode = recorded_.episode;
+    result.collision_kind = collision_.kind;
+    result.step = steps_;
+    result.actions_in_sight = actions_in_sight(seen, collision_, settings_.ego);
+    return result;
   }
 
   // By the last `actions`, at most as many as drive() has stopped before the collision.
@@ -146,6 +151,16 @@ class Recording {
   Collision collision_;
 };
 
+// The MoP's, at most so many.
+std::vector<int> last_actions(const RecordedEpisode& recorded, int count) {
+  const auto kept = std::min(static_cast<std::size_t>(count), recorded.actions.size());
+  std::vector<int> actions;
+  for (std::size_t i = recorded.actions.size() - kept; i < recorded.actions.size(); ++i) {
+    actions.push_back(driving::unpack(recorded.actions[i]).mop_action);
+  }
+  return actions;
+}
+
 }  // namespace
 
 std::vector<std::uint8_t> evasive_actions(const Scene& scene, const Collision& collision,
@@ -183,34 +198,55 @@ int actions_in_sight(std::span<const Scene> seen, const Collision& collision,
   return count;
 }
 
-Verdict Hindsight::by_last(int actions) const {
-  CORRIDOR_CHECK(actions >= 1, "{} actions", actions);
-  const auto index = std::min(static_cast<std::size_t>(actions), searches.size()) - 1;
-  return searches.at(index).verdict;
+Verdict by_last(int actions, std::span<const Verdict> searched) {
+  CORRIDOR_CHECK(actions >= 1 && !searched.empty(), "{} actions", actions);
+  return searched[std::min(static_cast<std::size_t>(actions), searched.size()) - 1];
 }
 
-Verdict Hindsight::by_reacting() const {
+Verdict by_reacting(int actions_in_sight, std::span<const Verdict> searched) {
   if (actions_in_sight == 0) return Verdict::kUnavoidable;
-  const Verdict verdict = by_last(actions_in_sight);
-  const bool all_searched = static_cast<std::size_t>(actions_in_sight) <= searches.size();
+  const Verdict verdict = by_last(actions_in_sight, searched);
+  const bool all_searched = static_cast<std::size_t>(actions_in_sight) <= searched.size();
   return all_searched || verdict == Verdict::kAvoidable ? verdict : Verdict::kUndecided;
 }
 
-Hindsight look_back(const RunConfig& config, const RecordedEpisode& recorded, world::World& world,
-                    const HindsightLimits& limits) {
+CollisionHindsight look_back(const RunConfig& config, const RecordedEpisode& recorded,
+                             world::World& world, const HindsightLimits& limits) {
   CORRIDOR_CHECK(limits.actions >= 1, "{} actions", limits.actions);
   const int actions_max = std::min(limits.actions, static_cast<int>(recorded.summary.steps));
   Recording recording(config, recorded, world);
-  Hindsight result;
-  recording.drive(actions_max, result);
-  for (int actions = 1; actions <= actions_max; ++actions) {
-    result.searches.push_back(recording.search(actions, limits.attempts_max));
-    const EscapeSearch& search = result.searches.back();
+  CollisionHindsight result = recording.drive(actions_max);
+  result.recorded = last_actions(recorded, limits.actions);
+  std::vector<Verdict> searched;
+  for (int actions = 1; actions <= actions_max && result.escape.empty(); ++actions) {
+    const EscapeSearch search = recording.search(actions, limits.attempts_max);
+    searched.push_back(search.verdict);
+    result.attempts.push_back(search.attempts);
     if (search.verdict != Verdict::kAvoidable) continue;
     recording.check_escape(actions, search.escape);
-    break;
+    result.escape = search.escape;
   }
+  result.by_reacting = by_reacting(result.actions_in_sight, searched);
+  for (int i = 1; i <= limits.actions; ++i) result.by_last_actions.push_back(by_last(i, searched));
   return result;
+}
+
+void report_hindsight(const RunConfig& config, const LookBackTask& task,
+                      const RunDirectory& directory, world::World& world,
+                      const std::function<bool(std::int64_t, std::int64_t)>& progress) {
+  task.limits.check();
+  const EvaluationRecord evaluated =
+      read_evaluation(directory.evaluation({task.planner, task.seed}));
+  HindsightRecord record{task.planner, task.seed, evaluated.steps, task.limits, {}};
+  for (const EpisodeRecord& episode : evaluated.per_episode) {
+    if (episode.collisions == 0) continue;
+    const RecordedEpisode recorded =
+        read_own_episode(config, directory.episode({task.planner, task.seed, episode.episode}));
+    record.collisions.push_back(look_back(config, recorded, world, task.limits));
+    if (!progress(static_cast<std::int64_t>(record.collisions.size()), evaluated.collisions))
+      return;
+  }
+  write_hindsight(directory, record);
 }
 
 }  // namespace corridor::actor

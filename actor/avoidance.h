@@ -14,15 +14,17 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
 #include "actor/driving/collision.h"
 #include "actor/driving/scene.h"
-#include "actor/escape_search.h"
 #include "actor/world/world.h"
+#include "proto/run/actor_task.h"
 #include "proto/run/hindsight_record.h"
 #include "proto/run/recorded_episode.h"
+#include "proto/run/run_directory.h"
 #include "proto/settings/settings.h"
 
 namespace corridor::actor {
@@ -46,24 +48,25 @@ std::vector<std::uint8_t> evasive_actions(const driving::Scene& scene,
 int actions_in_sight(std::span<const driving::Scene> seen, const driving::Collision& collision,
                      const EgoSettings& ego);
 
-struct Hindsight {
-  driving::Collision collision;
-  int step = 0;  // of the collision: the episode's last
-  int actions_in_sight = 0;
-  // By the last 1, 2, ... actions, up to the first that is avoidable, to the limit, or to the
-  // episode's start. At least one.
-  std::vector<EscapeSearch> searches;
-
-  // By the last so many actions (at least 1). What fewer could avoid, more could.
-  Verdict by_last(int actions) const;
-  // By the actions chosen with the cause in sight: with none, kUnavoidable; with more than were
-  // searched, kUndecided unless those that were searched could.
-  Verdict by_reacting() const;
-};
+// By the last so many actions (at least 1), of which `searched` has the verdicts by the last 1, 2,
+// ... up to the first that is avoidable, to the limit, or to the episode's start; at least one.
+// What fewer could avoid, more could.
+Verdict by_last(int actions, std::span<const Verdict> searched);
+// By the actions chosen with the cause in sight: with none, kUnavoidable; with more than were
+// searched, kUndecided unless those that were searched could.
+Verdict by_reacting(int actions_in_sight, std::span<const Verdict> searched);
 
 // Throws Failure when the episode has no collision or does not drive again as recorded. Equal
 // arguments give equal results. When stop_requested(), they are incomplete.
-Hindsight look_back(const RunConfig& config, const RecordedEpisode& recorded, world::World& world,
-                    const HindsightLimits& limits);
+CollisionHindsight look_back(const RunConfig& config, const RecordedEpisode& recorded,
+                             world::World& world, const HindsightLimits& limits);
+
+// Looks back on every collision of an evaluation: reads what it (actor/evaluation.h) wrote about
+// the task's planner and seed, and writes a record of its collisions. `progress` hears of the
+// collisions done, of how many, after each; when it returns false nothing is written. Equal tasks
+// write equal files. Throws Failure as look_back does, and when there is no such evaluation.
+void report_hindsight(const RunConfig& config, const LookBackTask& task,
+                      const RunDirectory& directory, world::World& world,
+                      const std::function<bool(std::int64_t done, std::int64_t total)>& progress);
 
 }  // namespace corridor::actor

@@ -73,7 +73,8 @@ class Trainer {
       expect<Noted>(*body, decode_learner_reply, "learner");
       time_.charge(TimePart::kWaitForLearner);
     }
-    ask_for_weights_of(round + 1);
+    // The weights of the next round are asked for while this one is driven: they arrive meanwhile.
+    if (round + 1 < schedule_.rounds()) ask_for(schedule_.weights_version(round + 1));
     time_.charge(TimePart::kTransport);
     const Insert chunk = rollout_->drive_round(weights_);
     delay_();
@@ -88,20 +89,14 @@ class Trainer {
     return true;
   }
 
-  // The weights of the next round are asked for while this one is driven: they arrive meanwhile.
-  void ask_for_weights_of(std::uint64_t round) {
-    if (round >= schedule_.rounds()) return;
-    const std::uint64_t version = schedule_.weights_version(round);
+  void ask_for(std::uint64_t version) {
     if (asked_ == version) return;
     learner_.send(encode(LearnerRequest(WeightsWanted{version})));
     asked_ = version;
   }
 
   bool fetch_weights(std::uint64_t version) {
-    if (asked_ != version) {
-      learner_.send(encode(LearnerRequest(WeightsWanted{version})));
-      asked_ = version;
-    }
+    ask_for(version);
     time_.charge(TimePart::kTransport);
     if (have_ != version) {
       const auto body = answer(learner_);

@@ -1,5 +1,6 @@
 #include "actor/tracer.h"
 
+#include <functional>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -45,31 +46,20 @@ class Tracer {
 
   const Episode& episode() const { return episode_; }
 
-  void begin(world::EpisodeStart start) {
+  // At most `steps` of the episode; `choose` says what each is driven with.
+  EpisodeTrace drive(world::EpisodeStart start, std::int64_t steps,
+                     const std::function<driving::StepAction()>& choose) {
     start.watch = [this](const driving::Scene& scene) {
       substeps_.push_back(traced(scene, config_.ego));
     };
     episode_.begin(start);
     add_step();
-  }
-
-  bool step(const driving::StepAction& action) {
-    TracedDecision decision = look_at(action);
-    const StepOutcome outcome = episode_.step(action.command, action.mop_action);
-    decision.bp_reward = outcome.bp_reward;
-    decision.mop_reward = outcome.mop_reward;
-    trace_.steps.back().command = static_cast<int>(episode_.situation().previous);
-    trace_.steps.back().decision = std::move(decision);
-    add_step();
-    return outcome.episode_ended;
-  }
-  bool step_by_world() {
-    const bool ended = episode_.step_by_world().episode_ended;
-    add_step();
-    return ended;
-  }
-
-  EpisodeTrace end() {
+    bool ended = false;
+    for (std::int64_t i = 0; i < steps && !ended; ++i) {
+      const bool by_world = start.driver == world::EgoDriver::kWorld;
+      ended = (by_world ? episode_.step_by_world() : step(choose())).episode_ended;
+      add_step();
+    }
     episode_.end();
     const EpisodeSummary& summary = episode_.summary();
     trace_.bp_reward = summary.bp_reward;
@@ -81,6 +71,16 @@ class Tracer {
   }
 
  private:
+  StepOutcome step(const driving::StepAction& action) {
+    TracedDecision decision = look_at(action);
+    const StepOutcome outcome = episode_.step(action.command, action.mop_action);
+    decision.bp_reward = outcome.bp_reward;
+    decision.mop_reward = outcome.mop_reward;
+    trace_.steps.back().command = static_cast<int>(episode_.situation().previous);
+    trace_.steps.back().decision = std::move(decision);
+    return outcome;
+  }
+
   void add_step() {
     // The last of the substeps is the step itself.
     if (!substeps_.empty()) substeps_.pop_back();
@@ -139,15 +139,11 @@ EpisodeTrace trace_episode(const RunConfig& config, const Networks* networks,
                            const std::filesystem::path& file, world::World& world) {
   const RecordedEpisode recorded = read_own_episode(config, file);
   Tracer tracer(config, planner_pair(recorded.planner), networks, world);
-  tracer.begin(start_of(recorded));
-  bool ended = false;
-  for (std::int64_t i = 0; i < recorded.summary.steps && !ended; ++i) {
-    ended = recorded.driven_by_world
-                ? tracer.step_by_world()
-                : tracer.step(driving::unpack(recorded.actions[static_cast<std::size_t>(i)]));
-  }
+  std::size_t next = 0;
+  EpisodeTrace trace = tracer.drive(start_of(recorded), recorded.summary.steps,
+                                    [&] { return driving::unpack(recorded.actions[next++]); });
   check_as_recorded(tracer.episode(), recorded);
-  return tracer.end();
+  return trace;
 }
 
 EpisodeTrace trace_drive(const RunConfig& config, const Networks& networks, const PlannerPair& pair,
@@ -157,21 +153,12 @@ EpisodeTrace trace_drive(const RunConfig& config, const Networks& networks, cons
   Tracer tracer(config, pair, &networks, world);
   world::EpisodeStart start{.seed = episode_seed};
   if (pair.world_drives()) start.driver = world::EgoDriver::kWorld;
-  tracer.begin(start);
   if (bp) bp->begin_episode(episode_seed);
-  bool ended = false;
-  for (std::int64_t i = 0; i < steps && !ended; ++i) {
-    if (pair.world_drives()) {
-      ended = tracer.step_by_world();
-      continue;
-    }
+  return tracer.drive(start, steps, [&] {
     const Episode& episode = tracer.episode();
-    driving::StepAction action;
-    action.command = bp->decide(episode.situation());
-    action.mop_action = mop->decide(episode.situation(), episode.window(action.command));
-    ended = tracer.step(action);
-  }
-  return tracer.end();
+    const driving::Command command = bp->decide(episode.situation());
+    return driving::StepAction{command, mop->decide(episode.situation(), episode.window(command))};
+  });
 }
 
 }  // namespace corridor::actor

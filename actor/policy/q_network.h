@@ -16,8 +16,6 @@ class QNetwork {
   // `parameters` in NetworkShape's order, as many as it says (CHECK).
   QNetwork(NetworkShape shape, std::vector<float> parameters);
 
-  const NetworkShape& shape() const { return shape_; }
-
   // Q-values [actions]; valid until the next call.
   std::span<const float> q_values(std::span<const float> observation);
 

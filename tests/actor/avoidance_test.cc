@@ -9,8 +9,10 @@
 #include "actor/redrive.h"
 #include "actor/world/sumo_world.h"
 #include "proto/base/failure.h"
+#include "proto/run/evaluation_record.h"
 #include "proto/settings/collision_kinds.h"
 #include "proto/settings/sumo_names.h"
+#include "proto/system/files.h"
 #include "scenarios/sumo_files.h"
 #include "tests/support/fake_world.h"
 #include "tests/support/recorded_collision.h"
@@ -107,29 +109,22 @@ TEST(ActionsInSight, AVehicleInThePathOrOneThatTheEgoMovesIntoIsInSightWhenItIsT
   EXPECT_EQ(actions_in_sight(std::vector{alone, beside(0.0)}, kSideByEgo, ego), 1);
 }
 
-Hindsight with(int in_sight, std::vector<Verdict> verdicts) {
-  Hindsight hindsight;
-  hindsight.actions_in_sight = in_sight;
-  for (const Verdict verdict : verdicts) hindsight.searches.push_back({verdict, 1, {}});
-  return hindsight;
+TEST(Verdicts, WhatFewerActionsCouldAvoidMoreCould) {
+  const std::vector searched = {Verdict::kUnavoidable, Verdict::kAvoidable};
+  EXPECT_EQ(by_last(1, searched), Verdict::kUnavoidable);
+  EXPECT_EQ(by_last(2, searched), Verdict::kAvoidable);
+  EXPECT_EQ(by_last(4, searched), Verdict::kAvoidable);
 }
 
-TEST(Hindsight, WhatFewerActionsCouldAvoidMoreCould) {
-  const Hindsight hindsight = with(1, {Verdict::kUnavoidable, Verdict::kAvoidable});
-  EXPECT_EQ(hindsight.by_last(1), Verdict::kUnavoidable);
-  EXPECT_EQ(hindsight.by_last(2), Verdict::kAvoidable);
-  EXPECT_EQ(hindsight.by_last(4), Verdict::kAvoidable);
-}
-
-TEST(Hindsight, ReactingHasTheActionsInSightOnly) {
+TEST(Verdicts, ReactingHasTheActionsInSightOnly) {
   using enum Verdict;
-  EXPECT_EQ(with(0, {kAvoidable}).by_reacting(), kUnavoidable);
-  EXPECT_EQ(with(1, {kAvoidable}).by_reacting(), kAvoidable);
-  EXPECT_EQ(with(1, {kUnavoidable, kAvoidable}).by_reacting(), kUnavoidable);
-  EXPECT_EQ(with(2, {kUnavoidable, kAvoidable}).by_reacting(), kAvoidable);
-  EXPECT_EQ(with(9, {kUnavoidable, kAvoidable}).by_reacting(), kAvoidable);
-  EXPECT_EQ(with(2, {kUnavoidable, kUndecided}).by_reacting(), kUndecided);
-  EXPECT_EQ(with(9, {kUnavoidable, kUnavoidable}).by_reacting(), kUndecided)
+  EXPECT_EQ(by_reacting(0, std::vector{kAvoidable}), kUnavoidable);
+  EXPECT_EQ(by_reacting(1, std::vector{kAvoidable}), kAvoidable);
+  EXPECT_EQ(by_reacting(1, std::vector{kUnavoidable, kAvoidable}), kUnavoidable);
+  EXPECT_EQ(by_reacting(2, std::vector{kUnavoidable, kAvoidable}), kAvoidable);
+  EXPECT_EQ(by_reacting(9, std::vector{kUnavoidable, kAvoidable}), kAvoidable);
+  EXPECT_EQ(by_reacting(2, std::vector{kUnavoidable, kUndecided}), kUndecided);
+  EXPECT_EQ(by_reacting(9, std::vector{kUnavoidable, kUnavoidable}), kUndecided)
       << "more could be done than was searched";
 }
 
@@ -148,10 +143,10 @@ TEST_F(LookBack, AnEscapeThatIsFoundInSumoEscapesWhenDrivenAgain) {
   world::SumoWorld world(world::world_settings(config_), temporary_.path() / kSumoNetworkFile,
                          temporary_.path() / kSumoRoutesFile, time);
   const RecordedEpisode episode = record_collision(config_, world);
-  const Hindsight hindsight = look_back(config_, episode, world, {});
-  const int actions = static_cast<int>(hindsight.searches.size());
-  ASSERT_EQ(hindsight.by_last(actions), Verdict::kAvoidable);
-  const auto& escape = hindsight.searches.back().escape;
+  const CollisionHindsight hindsight = look_back(config_, episode, world, {});
+  const int actions = static_cast<int>(hindsight.attempts.size());
+  ASSERT_EQ(hindsight.by_last_actions[actions - 1], Verdict::kAvoidable);
+  const auto& escape = hindsight.escape;
   EXPECT_EQ(escape.size(), static_cast<std::size_t>(actions + kMarginSteps));
 
   Episode again(config_, world);
@@ -163,9 +158,8 @@ TEST_F(LookBack, AnEscapeThatIsFoundInSumoEscapesWhenDrivenAgain) {
   }
   EXPECT_EQ(again.summary().steps, episode.summary.steps + kMarginSteps);
 
-  const Hindsight twice = look_back(config_, episode, world, {});
-  EXPECT_EQ(twice.searches.back().escape, escape);
-  EXPECT_EQ(twice.searches.back().attempts, hindsight.searches.back().attempts);
+  const CollisionHindsight twice = look_back(config_, episode, world, {});
+  EXPECT_EQ(twice, hindsight);
 }
 
 // Somebody hits the ego in a certain step, whatever it does.
@@ -191,17 +185,18 @@ TEST_F(LookBack, WhatHappensWhateverTheEgoDoesIsUnavoidable) {
   DoomedWorld world(config_);
   const RecordedEpisode episode = record_collision(config_, world);
   ASSERT_EQ(episode.summary.steps, DoomedWorld::kStep);
-  const Hindsight hindsight =
+  const CollisionHindsight hindsight =
       look_back(config_, episode, world, {.actions = 2, .attempts_max = 500});
-  EXPECT_EQ(hindsight.by_last(1), Verdict::kUnavoidable);
-  EXPECT_EQ(hindsight.by_last(2), Verdict::kUnavoidable);
-  EXPECT_GT(hindsight.searches[1].attempts, hindsight.searches[0].attempts);
+  EXPECT_EQ(hindsight.by_last_actions[0], Verdict::kUnavoidable);
+  EXPECT_EQ(hindsight.by_last_actions[1], Verdict::kUnavoidable);
+  EXPECT_GT(hindsight.attempts[1], hindsight.attempts[0]);
   EXPECT_EQ(hindsight.step, DoomedWorld::kStep);
-  EXPECT_EQ(hindsight.collision, kSideByOther);
+  EXPECT_EQ(hindsight.collision_kind, CollisionKind::kSideByOther);
 
-  const Hindsight short_of = look_back(config_, episode, world, {.actions = 1, .attempts_max = 3});
-  EXPECT_EQ(short_of.by_last(1), Verdict::kUndecided);
-  EXPECT_EQ(short_of.searches[0].attempts, 3);
+  const CollisionHindsight short_of =
+      look_back(config_, episode, world, {.actions = 1, .attempts_max = 3});
+  EXPECT_EQ(short_of.by_last_actions[0], Verdict::kUndecided);
+  EXPECT_EQ(short_of.attempts[0], 3);
 }
 
 TEST_F(LookBack, RefusesEpisodesWithoutACollisionAndThoseThatDoNotDriveAsRecorded) {
@@ -220,6 +215,68 @@ TEST_F(LookBack, RefusesEpisodesWithoutACollisionAndThoseThatDoNotDriveAsRecorde
   episode.trajectory_hash = free.trajectory_hash();
   EXPECT_THAT([&] { look_back(config_, episode, world, {}); },
               ThrowsMessage<Failure>(HasSubstr("ends without a collision")));
+}
+
+// An evaluation of two episodes, the second of which ends in a collision.
+class HindsightReport : public testing::Test {
+ protected:
+  HindsightReport() {
+    config_.simulation.episode_steps = 100;
+    FakeWorld world(config_);
+    const RecordedEpisode second = record_collision(config_, world);
+    write_recorded_episode(run_, second);
+    EpisodeRecord first;
+    first.steps = 1234;
+    write_evaluation(run_, evaluation_of({"rules", 5}, 1.0, {first, second.summary}));
+  }
+
+  std::string report(bool go_on = true) {
+    FakeWorld world(config_);
+    report_hindsight(config_, {"rules", 5, {}}, run_, world,
+                     [&](std::int64_t done, std::int64_t of) {
+                       EXPECT_EQ(done, 1);
+                       EXPECT_EQ(of, 1);
+                       return go_on;
+                     });
+    const auto file = run_.hindsight({"rules", 5});
+    return std::filesystem::exists(file) ? read_file(file) : "";
+  }
+
+  TemporaryDirectory temporary_;
+  RunDirectory run_ = RunDirectory::create(temporary_.path() / "run");
+  RunConfig config_;
+};
+
+TEST_F(HindsightReport, HasARecordOfEveryCollision) {
+  report();
+  const HindsightRecord written = read_hindsight(run_.hindsight({"rules", 5}));
+  EXPECT_EQ(written.planner, "rules");
+  EXPECT_EQ(written.seed, 5u);
+  EXPECT_EQ(written.limits, HindsightLimits{});
+  ASSERT_EQ(written.collisions.size(), 1u);
+  const CollisionHindsight& collision = written.collisions[0];
+  EXPECT_EQ(written.steps, 1234 + collision.step);
+  EXPECT_EQ(collision.episode, 1u);
+  EXPECT_EQ(collision.collision_kind, CollisionKind::kRearEnding);
+  EXPECT_EQ(collision.by_last_actions.size(), 4u);
+  EXPECT_EQ(collision.recorded, (std::vector<int>{16, 16, 16, 16})) << "straight on, ever faster";
+  EXPECT_EQ(collision.escape.size(), collision.attempts.size() + kMarginSteps);
+  EXPECT_GT(collision.actions_in_sight, 0);
+}
+
+TEST_F(HindsightReport, TwiceWritesEqualFiles) {
+  const std::string first = report();
+  EXPECT_FALSE(first.empty());
+  EXPECT_EQ(report(), first);
+}
+
+TEST_F(HindsightReport, StoppedWritesNothing) { EXPECT_EQ(report(false), ""); }
+
+TEST_F(HindsightReport, RefusesWhatIsNoEvaluation) {
+  write_file(run_.evaluation({"rules", 5}), "{}");
+  EXPECT_THAT([&] { report(); }, ThrowsMessage<Failure>(HasSubstr("is no evaluation")));
+  std::filesystem::remove(run_.evaluation({"rules", 5}));
+  EXPECT_THROW(report(), Failure);
 }
 
 }  // namespace
