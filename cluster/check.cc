@@ -61,11 +61,11 @@ std::string summary(const RunConfig& config) {
              "  traffic     {} to {} vehicles within {:.0f} m; {:.0f} % slow, {:.0f} % trucks; "
              "{} blind drivers a second; {} objects per km\n"
              "  time        steps of {} s, episodes of {}; {} actors, rounds of {} steps each\n",
-             road.lanes, road.lane_width_m, road.length_m / 1000.0, 3.6 * road.speed_limit_mps,
-             traffic.vehicles_min, traffic.vehicles_max, traffic.window_m,
-             100.0 * traffic.slow_share, 100.0 * traffic.truck_share, traffic.blind_rate_per_s,
-             traffic.objects_per_km, config.simulation.step_s, config.simulation.episode_steps,
-             config.run.actors, config.schedule.steps_per_round) +
+             road.lanes, road.lane_width_m, road.length_m / 1000.0,
+             kKphPerMps * road.speed_limit_mps, traffic.vehicles_min, traffic.vehicles_max,
+             traffic.window_m, 100.0 * traffic.slow_share, 100.0 * traffic.truck_share,
+             traffic.blind_rate_per_s, traffic.objects_per_km, config.simulation.step_s,
+             config.simulation.episode_steps, config.run.actors, config.schedule.steps_per_round) +
          phases +
          fmt::format("  evaluation  {} steps for each planner, {} seed{}\n",
                      grouped(config.evaluation.steps), config.evaluation.seeds.size(),

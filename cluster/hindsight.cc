@@ -3,7 +3,7 @@
 #include "cluster/evaluate.h"
 #include "cluster/launch/local.h"
 #include "cluster/launch/plan.h"
-#include "cluster/results/hindsight_table.h"
+#include "cluster/results/results_tables.h"
 #include "cluster/watch/step_progress.h"
 #include "proto/base/failure.h"
 #include "proto/config/run_config.h"

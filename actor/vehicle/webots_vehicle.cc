@@ -5,11 +5,11 @@
 #include <numbers>
 
 #include "proto/base/failure.h"
+#include "proto/base/text.h"
 
 namespace corridor::vehicle {
 namespace {
 
-constexpr double kKphPerMps = 3.6;
 // A run-up ends when the speed is so near, and has failed after so long.
 constexpr double kSpeedTolerance_mps = 0.02;
 constexpr double kRunUpMax_s = 60.0;

@@ -32,8 +32,8 @@ struct Text {
   Point at;  // of the anchor, on the line that the letters stand on
   double size = 13.0;
   std::string text;
-  Colour colour = kInk;
   Anchor anchor = Anchor::kStart;
+  Colour colour = kInk;
   double turn_rad = 0.0;  // about `at`, > 0 to the left
 };
 

@@ -18,14 +18,11 @@ struct Row {
   std::string label;
 };
 
-void check_rows(double rows) {
-  if (rows > kMostRows) throw Failure("{:g} pictures are too many for a contact sheet", rows);
-}
-
 std::vector<Row> rows_of(const std::vector<Clip>& clips, double interval_s) {
   std::vector<Row> rows;
   if (clips.size() > 1) {
-    check_rows(static_cast<double>(clips.size()));
+    if (clips.size() > kMostRows)
+      throw Failure("{} pictures are too many for a contact sheet", clips.size());
     for (const Clip& clip : clips) rows.push_back({&clip, clip.duration_s(), clip.title});
     return rows;
   }
@@ -53,12 +50,10 @@ Canvas contact_sheet(const std::vector<Clip>& clips, double interval_s) {
   if (one) canvas.add(Text{{kMargin, 28}, 17, clips.front().title});
   for (const auto& [clip, time_s, label] : rows_of(clips, interval_s)) {
     const double top = canvas.height - kGap;
-    const TracedStep& step = clip->step_at(time_s);
-    canvas.add(Text{{kMargin, top + 16},
-                    14,
-                    step.command
-                        ? fmt::format("{}, BP: {}", label, clip->trace.command_name(*step.command))
-                        : label});
+    std::string text = label;
+    if (const auto command = clip->step_at(time_s).command)
+      text += ", BP: " + clip->trace.command_name(*command);
+    canvas.add(Text{{kMargin, top + 16}, 14, text});
     const Canvas road = road_from_above(*clip, time_s, kSheetRoad);
     canvas.inset({kMargin, top + kLabelHeight}, road);
     canvas.height = top + kLabelHeight + road.height + 2 * kGap;

@@ -7,6 +7,7 @@
 #include "cluster/pictures/chart.h"
 #include "cluster/pictures/road_view.h"
 #include "proto/base/format.h"
+#include "proto/base/text.h"
 
 namespace corridor::cluster {
 namespace {
@@ -37,9 +38,9 @@ void draw_axis(Canvas& canvas, double y, double from, double to, const std::stri
   for (double at = std::ceil(from / step) * step; at <= to + 1e-9 * step; at += step) {
     const double x = kLeft + kRoad.width * (at - from) / (to - from);
     canvas.add(Line{{{x, y}, {x, y + kTick}}});
-    canvas.add(Text{{x, y + 20}, 13, fmt::format("{:g}", at), kInk, Anchor::kMiddle});
+    canvas.add(Text{{x, y + 20}, 13, fmt::format("{:g}", at), Anchor::kMiddle});
   }
-  canvas.add(Text{{kLeft + kRoad.width / 2, y + 40}, 13, title, kInk, Anchor::kMiddle});
+  canvas.add(Text{{kLeft + kRoad.width / 2, y + 40}, 13, title, Anchor::kMiddle});
 }
 
 void draw_lateral(Canvas& canvas, const EpisodeTrace& trace, const Chart& chart) {
@@ -52,8 +53,8 @@ void draw_lateral(Canvas& canvas, const EpisodeTrace& trace, const Chart& chart)
   chart.curve(canvas, d_m, trace.step_s, chart.end_s, {{}, kEgo, 1.6});
   for (int lane = 0; lane < trace.lanes; lane += std::max(1, trace.lanes - 1)) {
     const Point at = chart.at(0.0, (lane + 0.5) * trace.lane_width_m);
-    canvas.add(Text{
-        {at.x - 10, at.y + 5}, 13, lane == 0 ? "right lane" : "left lane", kInk, Anchor::kEnd});
+    canvas.add(
+        Text{{at.x - 10, at.y + 5}, 13, lane == 0 ? "right lane" : "left lane", Anchor::kEnd});
   }
 }
 
@@ -63,7 +64,7 @@ void draw_speed(Canvas& canvas, const EpisodeTrace& trace, const Chart& chart) {
     const Point at = chart.at(0.0, kph);
     chart.level(canvas, kph, {{}, kGrid});
     canvas.add(Line{{{at.x - kTick, at.y}, at}});
-    canvas.add(Text{{at.x - 10, at.y + 5}, 13, fmt::format("{:g}", kph), kInk, Anchor::kEnd});
+    canvas.add(Text{{at.x - 10, at.y + 5}, 13, fmt::format("{:g}", kph), Anchor::kEnd});
   }
   chart.level(canvas, kKphPerMps * trace.speed_limit_mps, {{}, kInk, 1.0, 4.0});
   CurveValues kph;
@@ -73,8 +74,8 @@ void draw_speed(Canvas& canvas, const EpisodeTrace& trace, const Chart& chart) {
   canvas.add(Text{{kLeft - 54, chart.top + chart.height / 2},
                   13,
                   "km/h",
-                  kInk,
                   Anchor::kMiddle,
+                  kInk,
                   std::numbers::pi / 2});
 }
 
@@ -94,22 +95,21 @@ double draw_typical(Canvas& canvas, const EpisodeTrace& trace, double top) {
 // Likewise.
 double draw_failed(Canvas& canvas, const EpisodeTrace& trace, double top) {
   const std::size_t count = std::min(kShownInstants, trace.steps.size());
-  const double end_s = static_cast<double>(trace.steps.size() - 1) * trace.step_s;
-  const Clip clip = clip_of(trace, "", 0.0, end_s);
+  const Clip clip{"", trace, 0.0, {}};
   const double height = road_height(trace, kRoad);
   for (std::size_t i = 0; i < count; ++i) {
     const double before_s = static_cast<double>(count - 1 - i) * trace.step_s;
     const TracedStep& step = trace.steps[trace.steps.size() - count + i];
     const std::string when = before_s == 0.0 ? "collision" : fmt::format("{:g} s before", before_s);
-    canvas.add(Text{{kLeft - 14, top + 0.4 * height}, 13, when, kInk, Anchor::kEnd});
+    canvas.add(Text{{kLeft - 14, top + 0.4 * height}, 13, when, Anchor::kEnd});
     if (step.command) {
       canvas.add(Text{{kLeft - 14, top + 0.4 * height + 24},
                       13,
                       "BP: " + trace.command_name(*step.command),
-                      kFaint,
-                      Anchor::kEnd});
+                      Anchor::kEnd,
+                      kFaint});
     }
-    canvas.inset({kLeft, top}, road_from_above(clip, end_s - before_s, kRoad));
+    canvas.inset({kLeft, top}, road_from_above(clip, clip.duration_s() - before_s, kRoad));
     top += height + (i + 1 < count ? kStripGap : 0.0);
   }
   draw_axis(canvas, top, -kRoad.behind_m, kRoad.ahead_m, "m ahead of the ego");
@@ -144,14 +144,13 @@ std::string caption_of(const EpisodeFigure& figure) {
   }
   if (figure.failed) {
     const EpisodeTrace& trace = figure.failed->trace;
-    std::string kind = trace.collision ? name_of(trace.collision->kind) : "";
-    std::ranges::replace(kind, '_', ' ');
+    const std::string kind = trace.collision ? name_of(trace.collision->kind) : "";
     text += fmt::format(
         " Before a collision, the first with its seed ({}, {}): dark blue is the ego, red the "
-        "other "
-        "vehicle, the numbers are km/h; light blue and yellow are the corridors that the motion "
+        "other vehicle, the numbers are km/h; light blue and yellow are the corridors that the "
+        "motion "
         "planner was shown and the one it chose, the line is its trajectory.",
-        figure.failed->name, kind);
+        figure.failed->name, replaced(kind, '_', " "));
   }
   return text;
 }

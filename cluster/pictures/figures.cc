@@ -1,10 +1,13 @@
 #include "cluster/pictures/figures.h"
 
 #include <algorithm>
+#include <cstring>
 #include <set>
 
 #include "cluster/pictures/palette.h"
+#include "proto/base/failure.h"
 #include "proto/base/text.h"
+#include "proto/system/subprocess.h"
 
 namespace corridor::cluster {
 namespace {
@@ -15,12 +18,7 @@ Colour colour(std::size_t curve) { return kCurves[curve % kCurves.size()]; }
 
 // Text, as gnuplot takes it as it is: in single quotes, since in double ones it runs `commands`.
 std::string literal(const std::string& text) {
-  std::string result = "'";
-  for (const char c : text) {
-    if (c == '\'') result += '\'';
-    result += c == '\n' ? ' ' : c;
-  }
-  return result + "'";
+  return "'" + replaced(replaced(text, '\'', "''"), '\n', " ") + "'";
 }
 
 std::string terminal_script(const std::string& name, int width, PictureFormat format) {
@@ -33,27 +31,26 @@ std::string terminal_script(const std::string& name, int width, PictureFormat fo
                      2 * width, 2 * kHeight);
 }
 
-// The steps of one panel's curves as data blocks, in thousands.
+// The curves of one panel as data blocks: thousands of steps, mean, low, high.
 std::string data_blocks(const Panel& panel, std::size_t number) {
   std::string text;
-  for (std::size_t i = 0; i < panel.curves.size(); ++i) {
-    text += fmt::format("$raw_{}_{} << EOD\n", number, i);
-    for (const CurvePoint& point : panel.curves[i].raw) {
-      text += fmt::format("{} {:.6g}\n", static_cast<double>(point.step) / 1000.0, point.value);
-    }
-    text += fmt::format("EOD\n$trend_{}_{} << EOD\n", number, i);
-    for (const BandPoint& point : panel.curves[i].trend) {
-      text += fmt::format("{} {:.6g} {:.6g} {:.6g}\n", static_cast<double>(point.step) / 1000.0,
-                          point.mean, point.low, point.high);
+  const auto add = [&](const char* name, std::size_t curve, const Band& band) {
+    text += fmt::format("${}_{}_{} << EOD\n", name, number, curve);
+    for (const auto& [step, mean, low, high] : band) {
+      text += fmt::format("{} {:.6g} {:.6g} {:.6g}\n", static_cast<double>(step) / 1000.0, mean,
+                          low, high);
     }
     text += "EOD\n";
+  };
+  for (std::size_t i = 0; i < panel.curves.size(); ++i) {
+    add("raw", i, panel.curves[i].raw);
+    add("trend", i, panel.curves[i].trend);
   }
   return text;
 }
 
 bool has_band(const Band& band) {
-  return std::any_of(band.begin(), band.end(),
-                     [](const BandPoint& point) { return point.low < point.high; });
+  return std::ranges::any_of(band, [](const auto& point) { return point.low < point.high; });
 }
 
 // Of one curve its lines are named, of several the curves: the caption says what the lines are.
@@ -146,6 +143,14 @@ std::string legend_script(const Figure& figure) {
          plot_command(items);
 }
 
+// gnuplot says the line, then marks the place, then says what is wrong.
+std::string last_line(std::string text) {
+  text.erase(text.find_last_not_of(" \n") + 1);
+  text.erase(0, text.rfind('\n') + 1);
+  text.erase(0, text.find_first_not_of(' '));
+  return text;
+}
+
 }  // namespace
 
 std::string gnuplot_script(const Figure& figure, PictureFormat format) {
@@ -168,6 +173,25 @@ std::string gnuplot_script(const Figure& figure, PictureFormat format) {
       1.0 - 0.06 / panels, 0.28 / panels);
   for (std::size_t i = 0; i < figure.panels.size(); ++i) script += panel_script(figure, i);
   return script + legend_script(figure) + "unset multiplot\n";
+}
+
+std::string run_gnuplot(const std::string& script, std::chrono::milliseconds deadline) {
+  const auto program = find_program("gnuplot");
+  if (!program) {
+    throw Failure("gnuplot is not installed, and it draws the figures: install gnuplot-nox");
+  }
+  const auto result = run_subprocess(*program, {"--default-settings"}, script, deadline);
+  if (!result) {
+    throw Failure("gnuplot was not done within {} s and was killed",
+                  std::chrono::duration<double>(deadline).count());
+  }
+  if (result->status > 128) {
+    throw Failure("gnuplot ended with signal {}", strsignal(result->status - 128));
+  }
+  if (result->status != 0 || result->output.empty()) {
+    throw Failure("gnuplot drew nothing: {}", last_line(result->errors));
+  }
+  return result->output;
 }
 
 }  // namespace corridor::cluster

@@ -1,6 +1,7 @@
-// Figures of curves over environment steps -> gnuplot's scripts. Pure.
+// Figures of curves over environment steps, drawn by gnuplot, of which it is the adapter.
 #pragma once
 
+#include <chrono>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,7 +12,7 @@ namespace corridor::cluster {
 
 // What one scenario's runs say about one quantity.
 struct PlottedCurve {
-  Curve raw;                    // thin
+  Band raw;                     // thin, without a band
   Band trend;                   // thick, with a band from low to high
   std::optional<double> level;  // a horizontal line
 };
@@ -35,7 +36,13 @@ struct Figure {
 enum class PictureFormat { kSvg, kPng };
 
 // Draws the figure to standard output; the legend stands below the panels. PNG is twice as large,
-// for print.
+// for print. Pure.
 std::string gnuplot_script(const Figure& figure, PictureFormat format);
+
+// What gnuplot writes to standard output for a script that sets a terminal and no output: the
+// picture. The user's own gnuplot settings do not count. Throws Failure with gnuplot's reason in
+// one line when it is not installed, refuses the script, or is not done by the deadline.
+std::string run_gnuplot(const std::string& script,
+                        std::chrono::milliseconds deadline = std::chrono::minutes(1));
 
 }  // namespace corridor::cluster

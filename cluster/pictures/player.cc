@@ -3,6 +3,7 @@
 #include "cluster/pictures/palette.h"
 #include "cluster/pictures/player_page.h"
 #include "proto/base/json.h"
+#include "proto/base/text.h"
 
 namespace corridor::cluster {
 namespace {
@@ -30,12 +31,10 @@ Json colours() {
 std::string player_page(const std::vector<Clip>& clips) {
   Json data = {{"clips", Json::array()}, {"colours", colours()}, {"changes", kCorridorChanges}};
   for (const Clip& clip : clips) data["clips"].push_back(described(clip));
-  std::string text = data.dump();
-  // No text of it may end the script.
-  for (std::size_t at = 0; (at = text.find('<', at)) != std::string::npos; at += 6)
-    text.replace(at, 1, "\\u003c");
   constexpr std::string_view kPlace = "{{data}}";
-  return std::string(kPlayerPage).replace(kPlayerPage.find(kPlace), kPlace.size(), text);
+  // No text of it may end the script.
+  return std::string(kPlayerPage)
+      .replace(kPlayerPage.find(kPlace), kPlace.size(), replaced(data.dump(), '<', "\\u003c"));
 }
 
 }  // namespace corridor::cluster

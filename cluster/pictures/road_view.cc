@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "proto/base/text.h"
+
 namespace corridor::cluster {
 namespace {
 
@@ -96,7 +98,7 @@ void draw_vehicle(Canvas& canvas, const Place& place, const TracedVehicle& vehic
   canvas.add(std::move(area));
   if (width <= kSpeedSize + 1) return;
   canvas.add(Text{turned({-length / 2, 0.35 * kSpeedSize}), kSpeedSize,
-                  fmt::format("{:.0f}", kKphPerMps * vehicle.speed_mps), kPaper, Anchor::kMiddle,
+                  fmt::format("{:.0f}", kKphPerMps * vehicle.speed_mps), Anchor::kMiddle, kPaper,
                   vehicle.yaw_rad});
 }
 

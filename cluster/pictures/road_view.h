@@ -8,8 +8,6 @@
 
 namespace corridor::cluster {
 
-inline constexpr double kKphPerMps = 3.6;
-
 struct RoadView {
   double width = 1232.0;                   // pixels
   double behind_m = 35.0, ahead_m = 65.0;  // what shows, from the ego's front bumper

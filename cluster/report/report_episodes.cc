@@ -13,26 +13,32 @@
 namespace corridor::cluster {
 namespace {
 
-// Where a run was evaluated in traffic as in its training.
-struct Evaluated {
-  RunDirectory directory;
-  std::vector<EvaluationRecord> results;
-};
-
-std::optional<Evaluated> evaluated_as_trained(const std::vector<RunGroup>& groups) {
-  for (const RunGroup& group : groups) {
-    for (const RunRecord& run : group.runs) {
-      for (const auto& [world, results] : run.evaluations) {
-        if (!run.worlds_of_training.contains(world) || results.empty()) continue;
-        return Evaluated{RunDirectory::open(run.driven_in(world)), results};
-      }
+// Of these evaluations, which lie there.
+ReportedEpisodes driven_again(const RunDirectory& directory,
+                              const std::vector<EvaluationRecord>& results) {
+  ReportedEpisodes reported;
+  const auto driven = [&](const std::optional<EpisodeName>& chosen) {
+    std::optional<DrivenEpisode> episode;
+    if (!chosen) return episode;
+    try {
+      episode = {chosen->text(), traced_by_actor(directory, TraceTask{directory.episode(*chosen)},
+                                                 std::chrono::minutes(1))};
+    } catch (const Failure& failure) {
+      reported.notes.push_back(fmt::format("no picture of {}: {}", chosen->text(), failure.what()));
     }
+    return episode;
+  };
+  for (const PlannerPair& pair : kPlannerPairs) {
+    std::vector<EvaluationRecord> of_planner;
+    for (const EvaluationRecord& result : results) {
+      if (result.planner == pair.name) of_planner.push_back(result);
+    }
+    if (of_planner.empty()) continue;
+    EpisodeFigure figure{pair.name, driven(typical_episode(of_planner)),
+                         driven(failed_episode(of_planner))};
+    if (figure.typical || figure.failed) reported.figures.push_back(std::move(figure));
   }
-  return std::nullopt;
-}
-
-EpisodeTrace drive_again(const RunDirectory& directory, const EpisodeName& name) {
-  return traced_by_actor(directory, TraceTask{directory.episode(name)}, std::chrono::minutes(1));
+  return reported;
 }
 
 }  // namespace
@@ -43,12 +49,11 @@ std::optional<EpisodeName> typical_episode(const std::vector<EvaluationRecord>& 
     for (const EpisodeRecord& episode : result.per_episode)
       longest = std::max(longest, episode.steps);
   }
-  std::vector<std::tuple<double, std::uint64_t, std::size_t>> whole;
+  std::vector<std::tuple<double, std::uint64_t, std::uint64_t>> whole;
   for (const EvaluationRecord& result : of_planner) {
-    for (std::size_t i = 0; i < result.per_episode.size(); ++i) {
-      const EpisodeRecord& episode = result.per_episode[i];
+    for (const EpisodeRecord& episode : result.per_episode) {
       if (episode.collisions == 0 && episode.steps == longest)
-        whole.emplace_back(episode.bp_reward, result.seed, i);
+        whole.emplace_back(episode.bp_reward, result.seed, episode.episode);
     }
   }
   if (whole.empty()) return std::nullopt;
@@ -59,40 +64,24 @@ std::optional<EpisodeName> typical_episode(const std::vector<EvaluationRecord>& 
 
 std::optional<EpisodeName> failed_episode(const std::vector<EvaluationRecord>& of_planner) {
   for (const EvaluationRecord& result : of_planner) {
-    for (std::size_t i = 0; i < result.per_episode.size(); ++i) {
-      const EpisodeRecord& episode = result.per_episode[i];
+    for (const EpisodeRecord& episode : result.per_episode) {
       if (episode.collisions > 0 && episode.steps >= static_cast<std::int64_t>(kShownInstants))
-        return EpisodeName{result.planner, result.seed, i};
+        return EpisodeName{result.planner, result.seed, episode.episode};
     }
   }
   return std::nullopt;
 }
 
 ReportedEpisodes report_episodes(const std::vector<RunGroup>& groups) {
-  ReportedEpisodes reported;
-  const std::optional<Evaluated> evaluated = evaluated_as_trained(groups);
-  if (!evaluated) return reported;
-  const auto driven = [&](const std::optional<EpisodeName>& chosen) {
-    std::optional<DrivenEpisode> episode;
-    if (!chosen) return episode;
-    try {
-      episode = {chosen->text(), drive_again(evaluated->directory, *chosen)};
-    } catch (const Failure& failure) {
-      reported.notes.push_back(fmt::format("no picture of {}: {}", chosen->text(), failure.what()));
+  for (const RunGroup& group : groups) {
+    for (const RunRecord& run : group.runs) {
+      for (const auto& [world, results] : run.evaluations) {
+        if (run.worlds_of_training.contains(world))
+          return driven_again(RunDirectory::open(run.driven_in(world)), results);
+      }
     }
-    return episode;
-  };
-  for (const PlannerPair& pair : kPlannerPairs) {
-    std::vector<EvaluationRecord> of_planner;
-    for (const EvaluationRecord& result : evaluated->results) {
-      if (result.planner == pair.name) of_planner.push_back(result);
-    }
-    if (of_planner.empty()) continue;
-    EpisodeFigure figure{pair.name, driven(typical_episode(of_planner)),
-                         driven(failed_episode(of_planner))};
-    if (figure.typical || figure.failed) reported.figures.push_back(std::move(figure));
   }
-  return reported;
+  return {};
 }
 
 }  // namespace corridor::cluster

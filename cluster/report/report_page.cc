@@ -3,10 +3,8 @@
 #include <algorithm>
 #include <cctype>
 #include <map>
-#include <set>
 #include <tuple>
 
-#include "cluster/report/html.h"
 #include "cluster/results/results_tables.h"
 #include "proto/base/format.h"
 #include "proto/base/text.h"
@@ -16,7 +14,36 @@
 namespace corridor::cluster {
 namespace {
 
+constexpr const char* kStyle = R"(
+body { max-width: 72rem; margin: 2rem auto; padding: 0 1rem; color: #222;
+       font: 15px/1.45 Helvetica, Arial, sans-serif; }
+h1 { font-size: 1.6rem; } h2 { font-size: 1.25rem; margin-top: 2.2rem; } h3 { font-size: 1.05rem; }
+figure { margin: 1.2rem 0; } figure > svg { width: 100%; height: auto; }
+figcaption, .note { color: #555; font-size: 0.9rem; }
+.table { overflow-x: auto; margin: 1rem 0; }
+table { border-collapse: collapse; font-size: 0.9rem; font-variant-numeric: tabular-nums; }
+caption { text-align: left; font-weight: bold; padding-bottom: 0.3rem; }
+thead th { border-top: 1.5px solid #222; border-bottom: 1px solid #222; vertical-align: bottom; }
+tbody tr:last-child > * { border-bottom: 1.5px solid #222; }
+th, td { padding: 0.2rem 0.8rem 0.2rem 0; text-align: right; font-weight: normal; }
+th:first-child { text-align: left; } td small { color: #666; }
+pre { background: #f5f5f5; padding: 0.7rem; overflow-x: auto; font-size: 0.85rem; }
+summary { cursor: pointer; }
+@media print { body { max-width: none; } figure { break-inside: avoid; } }
+)";
+
 constexpr const char* kUnknown = "-";
+
+std::string element(const char* name, const std::string& text) {
+  return fmt::format("<{0}>{1}</{0}>\n", name, html_escaped(text));
+}
+
+std::string html_figure(const DrawnFigure& figure) {
+  // What is before belongs to an XML document of its own.
+  const std::size_t start = std::min(figure.svg.find("<svg"), figure.svg.size());
+  return "<figure>\n" + figure.svg.substr(start) + element("figcaption", figure.caption) +
+         "</figure>\n";
+}
 
 std::string steps_text(const RunRecord& run) {
   const Schedule schedule(run.config);
@@ -63,26 +90,21 @@ Table making_table(const std::vector<RunGroup>& groups) {
   return table;
 }
 
-std::set<std::string> worlds_of(const RunGroup& group) {
-  std::set<std::string> worlds;
+// For each world that its runs drove in.
+std::string evaluation_tables(const RunGroup& group) {
+  std::map<std::string, std::vector<SeedResult>> by_world;
   for (const RunRecord& run : group.runs) {
-    for (const auto& [world, results] : run.evaluations) worlds.insert(world);
-  }
-  return worlds;
-}
-
-std::string tables_of(const RunGroup& group, const std::string& world) {
-  std::vector<SeedResult> results;
-  for (const RunRecord& run : group.runs) {
-    const auto in_world = run.evaluations.find(world);
-    if (in_world == run.evaluations.end()) continue;
-    for (const EvaluationRecord& result : in_world->second) {
-      results.push_back({run.config.run.seed, result});
+    for (const auto& [world, results] : run.evaluations) {
+      for (const EvaluationRecord& result : results)
+        by_world[world].push_back({run.config.run.seed, result});
     }
   }
-  std::string html = html_heading(
-      3, world.empty() ? group.label : fmt::format("{}, driving in {}", group.label, world));
-  for (const Table& table : results_tables(arms_of(results))) html += html_of(table);
+  std::string html;
+  for (const auto& [world, results] : by_world) {
+    html += element(
+        "h3", world.empty() ? group.label : fmt::format("{}, driving in {}", group.label, world));
+    for (const Table& table : results_tables(arms_of(results))) html += html_of(table);
+  }
   return html;
 }
 
@@ -93,32 +115,25 @@ std::string shell_word(const std::string& text) {
            std::string_view("/._-+,=:").find(static_cast<char>(c)) != std::string_view::npos;
   };
   if (!text.empty() && std::ranges::all_of(text, plain)) return text;
-  std::string word = "'";
-  for (const char c : text) word += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return word + "'";
+  return "'" + replaced(text, '\'', "'\\''") + "'";
 }
 
 // One command for all planners of equal steps and seeds.
 std::string evaluate_commands(const std::vector<EvaluationRecord>& results, const std::string& run,
                               const std::string& scenario) {
-  std::map<std::string, std::map<std::int64_t, std::vector<std::uint64_t>>> seeds;
-  for (const EvaluationRecord& result : results) {
-    seeds[result.planner][result.steps].push_back(result.seed);
-  }
+  std::map<std::pair<std::string, std::int64_t>, std::vector<std::uint64_t>> seeds;
+  for (const EvaluationRecord& result : results)
+    seeds[{result.planner, result.steps}].push_back(result.seed);
   std::map<std::pair<std::int64_t, std::vector<std::uint64_t>>, std::vector<std::string>> planners;
-  for (auto& [planner, of_steps] : seeds) {
-    for (auto& [steps, of_planner] : of_steps) {
-      std::ranges::sort(of_planner);
-      planners[{steps, of_planner}].push_back(planner);
-    }
+  for (auto& [key, of_planner] : seeds) {
+    std::ranges::sort(of_planner);
+    planners[{key.second, of_planner}].push_back(key.first);
   }
   std::string text;
   for (const auto& [key, names] : planners) {
     const auto& [steps, of_planners] = key;
-    std::vector<std::string> seed_texts;
-    for (const std::uint64_t seed : of_planners) seed_texts.push_back(std::to_string(seed));
     text += fmt::format("corridor evaluate {}{} --planners {} --seeds {} --steps {}\n", run,
-                        scenario, listed(names, ","), listed(seed_texts, ","), steps);
+                        scenario, listed(names, ","), fmt::join(of_planners, ","), steps);
   }
   return text;
 }
@@ -163,44 +178,46 @@ std::string report_page(const std::vector<RunGroup>& groups,
   for (const RunGroup& group : groups) labels.push_back(group.label);
   std::string body = html_of(runs_table(groups));
 
-  body += html_heading(2, "Training");
-  for (const DrawnFigure& drawn : training) body += html_figure(drawn.svg, drawn.caption);
+  body += element("h2", "Training");
+  for (const DrawnFigure& drawn : training) body += html_figure(drawn);
 
-  body += html_heading(2, "Evaluation");
-  bool evaluated = false;
-  for (const RunGroup& group : groups) {
-    for (const std::string& world : worlds_of(group)) {
-      body += tables_of(group, world);
-      evaluated = true;
-    }
-  }
-  body += evaluated ? html_of(paper_table())
-                    : html_paragraph(
-                          "None yet: corridor evaluate drives the planners on held-out "
-                          "traffic.");
+  body += element("h2", "Evaluation");
+  std::string evaluations;
+  for (const RunGroup& group : groups) evaluations += evaluation_tables(group);
+  body += evaluations.empty() ? element("p",
+                                        "None yet: corridor evaluate drives the planners on "
+                                        "held-out traffic.")
+                              : evaluations + html_of(paper_table());
 
-  if (!episodes.empty()) body += html_heading(2, "Episodes");
-  for (const DrawnFigure& drawn : episodes) body += html_figure(drawn.svg, drawn.caption);
+  if (!episodes.empty()) body += element("h2", "Episodes");
+  for (const DrawnFigure& drawn : episodes) body += html_figure(drawn);
 
-  body += html_heading(2, "Repeating it");
-  body += html_paragraph(
+  body += element("h2", "Repeating it");
+  body += element(
+      "p",
       "With the versions below each command gives the same bits, on any x86-64 processor with "
       "AVX2.");
   for (const RunGroup& group : groups) {
-    for (const RunRecord& run : group.runs) body += html_preformatted(repeating_commands(run));
+    for (const RunRecord& run : group.runs) body += element("pre", repeating_commands(run));
   }
   body += html_of(making_table(groups));
 
-  body += html_heading(2, "Settings");
+  body += element("h2", "Settings");
   const RunConfig& first = groups.front().runs.front().config;
-  body += html_folded(groups.front().label + ", config.toml", to_toml(first));
+  body += "<details>" + element("summary", groups.front().label + ", config.toml") +
+          element("pre", to_toml(first)) + "</details>\n";
   for (const RunGroup& group : groups) {
     const std::string differs = differences(first, group.runs.front().config);
     if (!differs.empty()) {
-      body += html_heading(3, group.label + " differs in") + html_preformatted(differs);
+      body += element("h3", group.label + " differs in") + element("pre", differs);
     }
   }
-  return html_document("corridor: " + listed(labels), body);
+  return fmt::format(
+      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
+      "<title>{0}</title>\n<style>{1}</style>\n</head>\n<body>\n<h1>{0}</h1>\n{2}</body>\n"
+      "</html>\n",
+      html_escaped("corridor: " + listed(labels)), kStyle, body);
 }
 
 }  // namespace corridor::cluster

@@ -9,8 +9,9 @@
 namespace corridor::cluster {
 
 struct DrawnFigure {
+  std::string name;  // of its files
   std::string caption;
-  std::string svg;
+  std::string svg, png;
 };
 
 // Runs with versions and fingerprints; the figures of their training; the tables of each training

@@ -15,22 +15,14 @@
 namespace corridor::cluster {
 namespace {
 
-std::string text_of_value(const OrderedJson& value) {
-  return value.is_string() ? value.get<std::string>() : value.dump();
-}
-
-std::vector<std::pair<std::string, std::string>> made_with(const OrderedJson& manifest) {
+std::vector<std::pair<std::string, std::string>> made_with(const RunManifest& manifest) {
   std::vector<std::pair<std::string, std::string>> result;
-  for (const auto& [name, value] : manifest.items()) {
+  const OrderedJson values = to_json(manifest).flatten();
+  for (const auto& [path, value] : values.items()) {
+    const std::string name = path.substr(path.rfind('/') + 1);
     // The settings are shown as a whole, and the id is what lets one into a run.
     if (name == "config" || name == "run_id") continue;
-    if (!value.is_object()) {
-      result.emplace_back(name, text_of_value(value));
-      continue;
-    }
-    for (const auto& [inner, version] : value.items()) {
-      result.emplace_back(inner, text_of_value(version));
-    }
+    result.emplace_back(name, value.is_string() ? value.get<std::string>() : value.dump());
   }
   return result;
 }
@@ -61,14 +53,13 @@ RunRecord read_run(const std::filesystem::path& root) {
   run.config = load_run_config(directory.config());
   const RunManifest manifest = read_manifest(directory);
   run.scenario = manifest.scenario_name();
-  run.made_with = made_with(to_json(manifest));
+  run.made_with = made_with(manifest);
 
   for (int i = 0; i < run.config.run.actors; ++i) {
     run.actors.push_back(read_metrics(directory, actor_name(i)));
   }
   run.learner.push_back(read_metrics(directory, kLearnerName));
-  if (std::all_of(run.actors.begin(), run.actors.end(),
-                  [](const ProcessMetrics& lines) { return lines.empty(); })) {
+  if (std::ranges::all_of(run.actors, &ProcessMetrics::empty)) {
     throw Failure("{} has no metrics of its actors yet: nothing was trained, or it has only begun",
                   root.string());
   }
@@ -77,20 +68,19 @@ RunRecord read_run(const std::filesystem::path& root) {
     run.fingerprint = fingerprint(*checkpoint);
   }
 
-  if (auto own = read_evaluations(directory.evaluation()); !own.empty()) {
-    run.evaluations[""] = std::move(own);
-    run.worlds_of_training.insert("");
-  }
+  std::vector<std::string> worlds = {""};
   std::error_code missing;
   for (const auto& world :
        std::filesystem::directory_iterator(RunDirectory::scenarios(root), missing)) {
-    auto results = read_evaluations(world.path() / "evaluation");
+    worlds.push_back(world.path().filename());
+  }
+  for (const std::string& world : worlds) {
+    const std::filesystem::path place = run.driven_in(world);
+    auto results = read_evaluations(place / "evaluation");
     if (results.empty()) continue;
-    const std::string name = world.path().filename();
-    run.evaluations[name] = std::move(results);
-    if (differ_in_seed_only(run.config, load_run_config(world.path() / "config.toml"))) {
-      run.worlds_of_training.insert(name);
-    }
+    run.evaluations[world] = std::move(results);
+    if (differ_in_seed_only(run.config, load_run_config(place / "config.toml")))
+      run.worlds_of_training.insert(world);
   }
   return run;
 }

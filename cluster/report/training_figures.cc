@@ -44,31 +44,16 @@ std::int64_t window_steps(const RunGroup& group) {
   return steps / kWindowsPerTraining;
 }
 
-Curve mean_curve(const std::vector<Curve>& curves) {
-  Curve mean;
-  for (const BandPoint& point : band_of(curves)) mean.push_back({point.step, point.mean});
-  return mean;
-}
-
 // `averaged`: the trend is the moving average of many values, and these are drawn too.
 PlottedCurve plotted(const RunGroup& group, Processes processes, Phase phase,
                      const Quantity& quantity, bool averaged) {
-  std::vector<Curve> raw;
-  for (const RunRecord& run : group.runs) {
-    raw.push_back(curve_of(run.*processes, phase, quantity.name, quantity.weight));
-  }
-  PlottedCurve curve;
-  if (!averaged) {
-    curve.trend = band_of(raw);
-    return curve;
-  }
-  std::vector<Curve> averages;
-  for (const Curve& of_run : raw) {
-    averages.push_back(moving_average(of_run, window_steps(group)));
-  }
-  curve.raw = mean_curve(raw);
-  curve.trend = band_of(averages);
-  return curve;
+  std::vector<Curve> curves;
+  for (const RunRecord& run : group.runs)
+    curves.push_back(curve_of(run.*processes, phase, quantity.name, quantity.weight));
+  const Band raw = band_of(curves);
+  if (!averaged) return {{}, raw, {}};
+  for (Curve& curve : curves) curve = moving_average(curve, window_steps(group));
+  return {raw, band_of(curves), {}};
 }
 
 std::optional<Level> rules_level(const RunGroup& group, Phase phase) {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <set>
-#include <span>
 
 #include "proto/base/failure.h"
 #include "proto/settings/planner_pairs.h"
@@ -22,27 +22,27 @@ struct Mean {
   double (*denominator)(const EpisodeRecord&, double step_s);
 };
 
+template <auto kField>
+double total(const EpisodeRecord& episode) {
+  return static_cast<double>(episode.*kField);
+}
+double kilometres(const EpisodeRecord& episode) { return episode.distance_m / 1000.0; }
+
 double thousands_of_steps(const EpisodeRecord& episode, double) {
   return static_cast<double>(episode.steps) / kPer;
 }
-double kilometres(const EpisodeRecord& episode) { return episode.distance_m / 1000.0; }
 double kilometres_driven(const EpisodeRecord& episode, double) { return kilometres(episode); }
-double lane_changes(const EpisodeRecord& episode) {
-  return static_cast<double>(episode.lane_changes);
+double hours(const EpisodeRecord& episode, double step_s) {
+  return static_cast<double>(episode.steps) * step_s / 3600.0;
 }
 
 constexpr Mean kMeans[] = {
-    {Quantity::kBpReward, [](const EpisodeRecord& e) { return e.bp_reward; }, thousands_of_steps},
-    {Quantity::kLaneChanges, lane_changes, thousands_of_steps},
-    {Quantity::kSpeed, kilometres,
-     [](const EpisodeRecord& e, double step_s) {
-       return static_cast<double>(e.steps) * step_s / 3600.0;
-     }},
-    {Quantity::kHardBrakes,
-     [](const EpisodeRecord& e) { return static_cast<double>(e.hard_brakes); }, thousands_of_steps},
-    {Quantity::kLaneChangesPerKm, lane_changes, kilometres_driven},
-    {Quantity::kBypassesPerKm,
-     [](const EpisodeRecord& e) { return static_cast<double>(e.bypasses); }, kilometres_driven},
+    {Quantity::kBpReward, total<&EpisodeRecord::bp_reward>, thousands_of_steps},
+    {Quantity::kLaneChanges, total<&EpisodeRecord::lane_changes>, thousands_of_steps},
+    {Quantity::kSpeed, kilometres, hours},
+    {Quantity::kHardBrakes, total<&EpisodeRecord::hard_brakes>, thousands_of_steps},
+    {Quantity::kLaneChangesPerKm, total<&EpisodeRecord::lane_changes>, kilometres_driven},
+    {Quantity::kBypassesPerKm, total<&EpisodeRecord::bypasses>, kilometres_driven},
 };
 
 // What is drawn by the bootstrap: episodes, or training seeds.
@@ -56,8 +56,7 @@ class ArmData {
   explicit ArmData(std::string planner)
       : planner_(std::move(planner)), learned_(planner_pair(planner_).learned()) {}
 
-  const std::string& planner() const { return planner_; }
-
+  bool empty() const { return results_.empty(); }
   void add(const SeedResult& added) {
     // Where nothing is learned all training seeds are one.
     const std::uint64_t training_seed = learned_ ? added.training_seed : 0;
@@ -67,65 +66,62 @@ class ArmData {
     if (slot == nullptr || slot->steps < added.result.steps) slot = &added.result;
   }
 
-  Arm arm(std::uint64_t seed) const {
+  Arm arm() const {
     Arm arm;
     arm.planner = planner_;
     arm.training_seeds = learned_ ? results_.size() : 0;
     std::set<std::uint64_t> evaluation_seeds;
+    CollisionCounts by_kind{};
     std::vector<double> lane_steps;
     for (const auto& [training_seed, by_seed] : results_) {
       for (const auto& [evaluation_seed, result] : by_seed) {
         evaluation_seeds.insert(evaluation_seed);
-        add_totals(*result, arm, lane_steps);
+        arm.steps += result->steps;
+        arm.distance_km += result->distance_km;
+        arm.collisions += result->collisions;
+        for (std::size_t kind = 0; kind < kCollisionKinds; ++kind)
+          by_kind[kind] += result->collisions_by_kind[kind];
+        add_lane_steps(*result, lane_steps);
       }
     }
     arm.evaluation_seeds = evaluation_seeds.size();
-    double all = 0.0;
-    for (const double steps : lane_steps) all += steps;
+    const double all = std::accumulate(lane_steps.begin(), lane_steps.end(), 0.0);
     for (const double steps : lane_steps) arm.lane_shares.push_back(all > 0.0 ? steps / all : 0.0);
 
-    const auto set = [&](Quantity quantity, const Estimate& estimate) {
-      arm.estimates[static_cast<std::size_t>(quantity)] = estimate;
-    };
     const double thousands = static_cast<double>(arm.steps) / kPer;
-    set(Quantity::kCollisions, rate(arm.collisions, thousands));
-    set(Quantity::kCollisionsPerKm, rate(arm.collisions, arm.distance_km));
+    arm.estimates = {{Quantity::kCollisions, rate(arm.collisions, thousands)},
+                     {Quantity::kCollisionsPerKm, rate(arm.collisions, arm.distance_km)}};
     constexpr std::array kKinds = {Quantity::kRearEnded, Quantity::kRearEnding,
                                    Quantity::kSideByOther, Quantity::kSideByEgo,
                                    Quantity::kOffRoad};
-    for (std::size_t kind = 0; kind < kCollisionKinds; ++kind) {
-      set(kKinds[kind], rate(arm.collisions_by_kind[kind], thousands));
+    for (std::size_t kind = 0; kind < kCollisionKinds; ++kind)
+      arm.estimates[kKinds[kind]] = rate(by_kind[kind], thousands);
+    for (const Mean& mean : kMeans) {
+      arm.estimates[mean.quantity] = {
+          interquartile_mean(seed_values(mean)),
+          percentile_interval(resampled(mean.quantity, kBootstrapSeed))};
     }
-    for (const Mean& mean : kMeans) set(mean.quantity, estimate(mean, seed));
     return arm;
   }
 
   // The bootstrap's values of a quantity.
   std::vector<double> resampled(Quantity quantity, std::uint64_t seed) const {
-    const auto mean = std::find_if(std::begin(kMeans), std::end(kMeans),
-                                   [&](const Mean& m) { return m.quantity == quantity; });
+    const auto mean = std::ranges::find(kMeans, quantity, &Mean::quantity);
     CORRIDOR_CHECK(mean != std::end(kMeans), "{}", static_cast<int>(quantity));
-    return over_seeds() ? bootstrap_interquartile_means(seed_values(*mean), seed)
-                        : bootstrap(*mean, seed);
+    if (results_.size() > 1) return bootstrap_interquartile_means(seed_values(*mean), seed);
+    const Units units = episodes(results_.begin()->second, *mean);
+    std::vector<double> values = bootstrap_ratios(units.numerators, units.denominators, seed);
+    // Over nothing, where the ego stood still.
+    for (double& value : values) value = std::isfinite(value) ? value : 0.0;
+    return values;
   }
 
  private:
-  bool over_seeds() const { return results_.size() > 1; }
-
-  static void add_totals(const EvaluationRecord& result, Arm& arm,
-                         std::vector<double>& lane_steps) {
-    arm.steps += result.steps;
-    arm.episodes += result.episodes;
-    arm.distance_km += result.distance_km;
-    arm.collisions += result.collisions;
-    for (std::size_t kind = 0; kind < kCollisionKinds; ++kind) {
-      arm.collisions_by_kind[kind] += result.collisions_by_kind[kind];
-    }
+  static void add_lane_steps(const EvaluationRecord& result, std::vector<double>& lane_steps) {
     for (const EpisodeRecord& episode : result.per_episode) {
       lane_steps.resize(std::max(lane_steps.size(), episode.lane_steps.size()));
-      for (std::size_t lane = 0; lane < episode.lane_steps.size(); ++lane) {
+      for (std::size_t lane = 0; lane < episode.lane_steps.size(); ++lane)
         lane_steps[lane] += static_cast<double>(episode.lane_steps[lane]);
-      }
     }
   }
 
@@ -152,28 +148,16 @@ class ArmData {
   }
 
   std::vector<double> seed_values(const Mean& mean) const {
+    const auto sum = [](const std::vector<double>& values) {
+      return std::accumulate(values.begin(), values.end(), 0.0);
+    };
     std::vector<double> values;
     for (const auto& [training_seed, by_seed] : results_) {
       const Units units = episodes(by_seed, mean);
-      double numerator = 0.0, denominator = 0.0;
-      for (const double value : units.numerators) numerator += value;
-      for (const double value : units.denominators) denominator += value;
-      values.push_back(denominator > 0.0 ? numerator / denominator : 0.0);
+      const double denominator = sum(units.denominators);
+      values.push_back(denominator > 0.0 ? sum(units.numerators) / denominator : 0.0);
     }
     return values;
-  }
-
-  std::vector<double> bootstrap(const Mean& mean, std::uint64_t seed) const {
-    const Units units = episodes(results_.begin()->second, mean);
-    std::vector<double> values = bootstrap_ratios(units.numerators, units.denominators, seed);
-    // Over nothing, where the ego stood still.
-    for (double& value : values) value = std::isfinite(value) ? value : 0.0;
-    return values;
-  }
-
-  Estimate estimate(const Mean& mean, std::uint64_t seed) const {
-    return {interquartile_mean(seed_values(mean)),
-            percentile_interval(resampled(mean.quantity, seed))};
   }
 
   std::string planner_;
@@ -183,8 +167,7 @@ class ArmData {
 };
 
 std::optional<Estimate> ratio(Quantity quantity, const Arm& arm, const ArmData& data,
-                              const Arm& baseline, const ArmData& baseline_data,
-                              std::uint64_t seed) {
+                              const Arm& baseline, const ArmData& baseline_data) {
   const double value = arm[quantity].value, other = baseline[quantity].value;
   if (other <= 0.0) return std::nullopt;
   if (quantity == Quantity::kCollisions) {
@@ -192,8 +175,8 @@ std::optional<Estimate> ratio(Quantity quantity, const Arm& arm, const ArmData& 
                                        arm.collisions, static_cast<double>(arm.steps),
                                        baseline.collisions, static_cast<double>(baseline.steps))};
   }
-  std::vector<double> ratios = data.resampled(quantity, seed);
-  const std::vector<double> others = baseline_data.resampled(quantity, seed + 1);
+  std::vector<double> ratios = data.resampled(quantity, kBootstrapSeed);
+  const std::vector<double> others = baseline_data.resampled(quantity, kBootstrapSeed + 1);
   for (std::size_t i = 0; i < ratios.size(); ++i) {
     ratios[i] = others[i] > 0.0 ? ratios[i] / others[i] : std::numeric_limits<double>::infinity();
   }
@@ -202,34 +185,26 @@ std::optional<Estimate> ratio(Quantity quantity, const Arm& arm, const ArmData& 
 
 }  // namespace
 
-const Arm* find_arm(const std::vector<Arm>& arms, const std::string& planner) {
-  const auto found = std::find_if(arms.begin(), arms.end(),
-                                  [&](const Arm& arm) { return arm.planner == planner; });
-  return found == arms.end() ? nullptr : &*found;
-}
-
-std::vector<Arm> arms_of(const std::vector<SeedResult>& results, std::uint64_t seed) {
+std::vector<Arm> arms_of(const std::vector<SeedResult>& results) {
   std::vector<ArmData> data;
+  std::vector<Arm> arms;
   for (const PlannerPair& pair : kPlannerPairs) {
     ArmData arm(pair.name);
-    bool any = false;
     for (const SeedResult& result : results) {
-      if (result.result.planner != pair.name) continue;
-      arm.add(result);
-      any = true;
+      if (result.result.planner == pair.name) arm.add(result);
     }
-    if (any) data.push_back(std::move(arm));
+    if (arm.empty()) continue;
+    arms.push_back(arm.arm());
+    data.push_back(std::move(arm));
   }
-  std::vector<Arm> arms;
-  for (const ArmData& arm : data) arms.push_back(arm.arm(seed));
 
   const auto ratios_to = [&](const char* name, std::size_t index) -> std::optional<Ratios> {
-    const Arm* baseline = find_arm(arms, name);
-    if (baseline == nullptr || baseline == &arms[index]) return std::nullopt;
-    const ArmData& baseline_data = data[static_cast<std::size_t>(baseline - arms.data())];
+    const auto baseline = std::ranges::find(arms, name, &Arm::planner);
+    const auto at = static_cast<std::size_t>(baseline - arms.begin());
+    if (at == arms.size() || at == index) return std::nullopt;
     Ratios ratios;
     for (std::size_t i = 0; i < kCompared.size(); ++i) {
-      ratios[i] = ratio(kCompared[i], arms[index], data[index], *baseline, baseline_data, seed);
+      ratios[i] = ratio(kCompared[i], arms[index], data[index], *baseline, data[at]);
     }
     return ratios;
   };

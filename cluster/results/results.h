@@ -22,6 +22,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -36,6 +37,7 @@ struct Estimate {
   Interval interval;
 };
 
+// Sums per 1000 steps but for speed (km/h) and what is named per km.
 enum class Quantity {
   kBpReward,
   kCollisions,
@@ -49,12 +51,8 @@ enum class Quantity {
   kHardBrakes,
   kCollisionsPerKm,
   kLaneChangesPerKm,
-  kBypassesPerKm,  // the last one
+  kBypassesPerKm,
 };
-inline constexpr std::size_t kQuantities = static_cast<std::size_t>(Quantity::kBypassesPerKm) + 1;
-
-// By quantity, sums per 1000 steps but for speed (km/h) and what is named per km.
-using Estimates = std::array<Estimate, kQuantities>;
 
 // Those that are compared with baselines.
 inline constexpr std::array kCompared = {Quantity::kBpReward, Quantity::kCollisions,
@@ -72,19 +70,15 @@ struct Arm {
   std::size_t training_seeds = 0;  // 0: nothing is learned
   std::size_t evaluation_seeds = 0;
   std::int64_t steps = 0;
-  std::int64_t episodes = 0;
   double distance_km = 0.0;
   std::int64_t collisions = 0;
-  std::array<std::int64_t, kCollisionKinds> collisions_by_kind{};
-  Estimates estimates{};
-  std::vector<double> lane_shares;  // of all steps, by lane, from the right
+  std::map<Quantity, Estimate> estimates;  // of each
+  std::vector<double> lane_shares;         // of all steps, by lane, from the right
   // Nothing when the baseline is not among the results, or is this arm.
   std::optional<Ratios> to_rules;
   std::optional<Ratios> to_sumo;
 
-  const Estimate& operator[](Quantity quantity) const {
-    return estimates[static_cast<std::size_t>(quantity)];
-  }
+  const Estimate& operator[](Quantity quantity) const { return estimates.at(quantity); }
 };
 
 // One evaluation of the networks of one training seed, in one scenario.
@@ -94,12 +88,9 @@ struct SeedResult {
 };
 
 // One scenario's arms, in the order of kPlannerPairs. Of a learned arm there is one result for each
-// training and evaluation seed. `seed` is the bootstrap's.
-inline constexpr std::uint64_t kBootstrapSeed = 1;
-std::vector<Arm> arms_of(const std::vector<SeedResult>& results,
-                         std::uint64_t seed = kBootstrapSeed);
+// training and evaluation seed.
+std::vector<Arm> arms_of(const std::vector<SeedResult>& results);
 
-// The arm of that planner; null when there is none.
-const Arm* find_arm(const std::vector<Arm>& arms, const std::string& planner);
+inline constexpr std::uint64_t kBootstrapSeed = 1;  // a baseline's is the next
 
 }  // namespace corridor::cluster

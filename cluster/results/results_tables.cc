@@ -14,16 +14,13 @@ constexpr const char* kNothing = "-";
 
 struct PaperRow {
   const char* planners;
-  // In the order of kCompared; hard brakes are not in it.
-  double bp_reward, collisions, lane_changes, speed_kph;
-
-  std::array<double, 4> values() const { return {bp_reward, collisions, lane_changes, speed_kph}; }
+  std::array<double, 4> values;  // in the order of kCompared; hard brakes are not in it
 };
 constexpr PaperRow kPaper[] = {
-    {"hierarchical RL", 699, 2.125, 25.0, 43.21},
-    {"rule-based BP and MoP", 627, 3.525, 73.0, 44.24},
-    {"rule-based BP with DQN MoP", 531, 3.350, 79.2, 41.29},
-    {"SUMO controlling the ego", 511, 1.625, 88.3, 41.78},
+    {"hierarchical RL", {699, 2.125, 25.0, 43.21}},
+    {"rule-based BP and MoP", {627, 3.525, 73.0, 44.24}},
+    {"rule-based BP with DQN MoP", {531, 3.350, 79.2, 41.29}},
+    {"SUMO controlling the ego", {511, 1.625, 88.3, 41.78}},
 };
 constexpr const PaperRow& kPaperHierarchical = kPaper[0];
 constexpr const PaperRow& kPaperRules = kPaper[1];
@@ -39,22 +36,35 @@ Cell cell(const Estimate& estimate, int digits) {
                       number(estimate.interval.high, digits))};
 }
 
+// One row an arm, which says its planner.
+Table table_of(const char* title, const std::vector<Arm>& arms) {
+  Table table{title, {"planner"}, {}};
+  for (const Arm& arm : arms) table.rows.push_back({{arm.planner}});
+  return table;
+}
+
+// A column more: what `cell_of` says of each arm.
+template <typename CellOf>
+void add_column(Table& table, const char* column, const std::vector<Arm>& arms,
+                const CellOf& cell_of) {
+  table.columns.push_back(column);
+  for (std::size_t i = 0; i < arms.size(); ++i) table.rows[i].push_back(cell_of(arms[i]));
+}
+
+void add_column(Table& table, const char* column, const std::vector<Arm>& arms, Quantity quantity,
+                int digits) {
+  add_column(table, column, arms, [&](const Arm& arm) { return cell(arm[quantity], digits); });
+}
+
 Table sums_table(const std::vector<Arm>& arms) {
-  Table table{"Sums per 1000 steps, with 95 % intervals",
-              {"planner", "BP reward", "collisions", "lane changes", "km/h", "hard brakes"},
-              {}};
-  bool over_seeds = false;
-  for (const Arm& arm : arms) {
-    over_seeds |= arm.training_seeds > 1;
-    table.rows.push_back({{arm.planner},
-                          cell(arm[Quantity::kBpReward], 0),
-                          cell(arm[Quantity::kCollisions], 2),
-                          cell(arm[Quantity::kLaneChanges], 1),
-                          cell(arm[Quantity::kSpeed], 1),
-                          cell(arm[Quantity::kHardBrakes], 1)});
-  }
+  Table table = table_of("Sums per 1000 steps, with 95 % intervals", arms);
+  add_column(table, "BP reward", arms, Quantity::kBpReward, 0);
+  add_column(table, "collisions", arms, Quantity::kCollisions, 2);
+  add_column(table, "lane changes", arms, Quantity::kLaneChanges, 1);
+  add_column(table, "km/h", arms, Quantity::kSpeed, 1);
+  add_column(table, "hard brakes", arms, Quantity::kHardBrakes, 1);
   table.note =
-      over_seeds
+      std::ranges::any_of(arms, [](const Arm& arm) { return arm.training_seeds > 1; })
           ? "Collisions: all seeds together, exact Poisson. The rest: interquartile mean over "
             "training seeds and bootstrap over them; where nothing is learned, or with one "
             "training seed, mean and bootstrap over episodes."
@@ -64,46 +74,34 @@ Table sums_table(const std::vector<Arm>& arms) {
 }
 
 Table kinds_table(const std::vector<Arm>& arms) {
-  Table table{"Collisions per 1000 steps by kind",
-              {"planner", "count", "rear-ended", "rear-ending", "side by other", "side by ego"},
-              {}};
-  for (const Arm& arm : arms) {
-    table.rows.push_back({{arm.planner},
-                          {grouped(arm.collisions)},
-                          cell(arm[Quantity::kRearEnded], 2),
-                          cell(arm[Quantity::kRearEnding], 2),
-                          cell(arm[Quantity::kSideByOther], 2),
-                          cell(arm[Quantity::kSideByEgo], 2)});
-  }
+  Table table = table_of("Collisions per 1000 steps by kind", arms);
+  add_column(table, "count", arms, [](const Arm& arm) { return Cell{grouped(arm.collisions)}; });
+  add_column(table, "rear-ended", arms, Quantity::kRearEnded, 2);
+  add_column(table, "rear-ending", arms, Quantity::kRearEnding, 2);
+  add_column(table, "side by other", arms, Quantity::kSideByOther, 2);
+  add_column(table, "side by ego", arms, Quantity::kSideByEgo, 2);
   // Only a car with dynamics of its own can leave the road.
-  if (std::ranges::any_of(arms, [](const Arm& a) { return a[Quantity::kOffRoad].value > 0.0; })) {
-    table.columns.push_back("off the road");
-    for (std::size_t i = 0; i < arms.size(); ++i) {
-      table.rows[i].push_back(cell(arms[i][Quantity::kOffRoad], 2));
-    }
-  }
+  if (std::ranges::any_of(arms, [](const Arm& a) { return a[Quantity::kOffRoad].value > 0.0; }))
+    add_column(table, "off the road", arms, Quantity::kOffRoad, 2);
   return table;
 }
 
 Table distance_table(const std::vector<Arm>& arms) {
-  Table table{"Per km, lanes and seeds",
-              {"planner", "km", "collisions/km", "lane changes/km", "bypasses/km",
-               "lanes %, right first", "training seeds", "evaluation seeds"},
-              {}};
-  for (const Arm& arm : arms) {
-    std::string lanes;
-    for (const double share : arm.lane_shares) {
-      lanes += fmt::format("{}{:.0f}", lanes.empty() ? "" : " / ", 100.0 * share);
-    }
-    table.rows.push_back({{arm.planner},
-                          {number(arm.distance_km, 0)},
-                          cell(arm[Quantity::kCollisionsPerKm], 3),
-                          cell(arm[Quantity::kLaneChangesPerKm], 2),
-                          cell(arm[Quantity::kBypassesPerKm], 2),
-                          {lanes},
-                          {arm.training_seeds == 0 ? kNothing : std::to_string(arm.training_seeds)},
-                          {std::to_string(arm.evaluation_seeds)}});
-  }
+  Table table = table_of("Per km, lanes and seeds", arms);
+  add_column(table, "km", arms, [](const Arm& arm) { return Cell{number(arm.distance_km, 0)}; });
+  add_column(table, "collisions/km", arms, Quantity::kCollisionsPerKm, 3);
+  add_column(table, "lane changes/km", arms, Quantity::kLaneChangesPerKm, 2);
+  add_column(table, "bypasses/km", arms, Quantity::kBypassesPerKm, 2);
+  add_column(table, "lanes %, right first", arms, [](const Arm& arm) {
+    std::vector<std::string> lanes;
+    for (const double share : arm.lane_shares) lanes.push_back(number(100.0 * share, 0));
+    return Cell{listed(lanes, " / ")};
+  });
+  add_column(table, "training seeds", arms, [](const Arm& arm) {
+    return Cell{arm.training_seeds == 0 ? kNothing : std::to_string(arm.training_seeds)};
+  });
+  add_column(table, "evaluation seeds", arms,
+             [](const Arm& arm) { return Cell{std::to_string(arm.evaluation_seeds)}; });
   return table;
 }
 
@@ -121,12 +119,39 @@ std::optional<Table> ratio_table(const std::vector<Arm>& arms, const char* basel
   }
   if (table.rows.empty()) return std::nullopt;
   std::vector<Cell> row = {{"the paper's hierarchical RL"}};
-  for (std::size_t i = 0; i < paper.values().size(); ++i) {
-    row.push_back({number(kPaperHierarchical.values()[i] / paper.values()[i], 2)});
+  for (std::size_t i = 0; i < paper.values.size(); ++i) {
+    row.push_back({number(kPaperHierarchical.values[i] / paper.values[i], 2)});
   }
   row.push_back({kNothing});
   table.rows.push_back(std::move(row));
   return table;
+}
+
+// All seeds of a planner as one record.
+std::vector<HindsightRecord> by_planner(const std::vector<HindsightRecord>& records) {
+  std::vector<HindsightRecord> all;
+  for (const HindsightRecord& record : records) {
+    const auto same = std::ranges::find(all, record.planner, &HindsightRecord::planner);
+    if (same == all.end()) {
+      all.push_back(record);
+      continue;
+    }
+    same->steps += record.steps;
+    same->collisions.insert(same->collisions.end(), record.collisions.begin(),
+                            record.collisions.end());
+  }
+  return all;
+}
+
+Cell per_1000(std::int64_t count, std::int64_t steps) {
+  const double scale = 1000.0 / static_cast<double>(steps);
+  const auto [low, high] = poisson_interval(count);
+  return cell({static_cast<double>(count) * scale, {low * scale, high * scale}}, 2);
+}
+
+Cell percent(std::int64_t count, std::int64_t of) {
+  if (of == 0) return {kNothing};
+  return {number(100.0 * static_cast<double>(count) / static_cast<double>(of), 1)};
 }
 
 }  // namespace
@@ -145,13 +170,48 @@ Table paper_table() {
               {"planner", "BP reward", "collisions", "lane changes", "km/h"},
               {},
               "Its own traffic, one policy, 40,000 steps, no intervals."};
-  for (const PaperRow& row : kPaper) {
-    table.rows.push_back({{row.planners},
-                          {number(row.bp_reward, 0)},
-                          {number(row.collisions, 3)},
-                          {number(row.lane_changes, 1)},
-                          {number(row.speed_kph, 2)}});
+  constexpr std::array kDigits = {0, 3, 1, 2};
+  for (const PaperRow& paper : kPaper) {
+    std::vector<Cell> row = {{paper.planners}};
+    for (std::size_t i = 0; i < kDigits.size(); ++i)
+      row.push_back({number(paper.values[i], kDigits[i])});
+    table.rows.push_back(std::move(row));
   }
+  return table;
+}
+
+Table hindsight_table(const std::vector<HindsightRecord>& records) {
+  CORRIDOR_CHECK(!records.empty(), "no records");
+  const int actions = records.front().limits.actions;
+  for (const HindsightRecord& record : records) {
+    CORRIDOR_CHECK(record.limits.actions == actions, "{} and {} actions", record.limits.actions,
+                   actions);
+  }
+  Table table{"Avoidable collisions, with 95 % intervals", {"planner", "collisions"}, {}};
+  for (int i = 1; i <= actions; ++i) table.columns.push_back(fmt::format("% by last {}", i));
+  for (const char* column : {"% by reacting", "floor", "undecided"})
+    table.columns.push_back(column);
+  for (const HindsightRecord& record : by_planner(records)) {
+    const auto count = [&](Verdict verdict, const auto& verdict_of) {
+      return std::ranges::count(record.collisions, verdict, verdict_of);
+    };
+    const auto all = std::ssize(record.collisions);
+    const auto by_reacting = &CollisionHindsight::by_reacting;
+    std::vector<Cell> row = {{record.planner}, per_1000(all, record.steps)};
+    for (std::size_t i = 0; i < static_cast<std::size_t>(actions); ++i) {
+      const auto by_last = [&](const auto& collision) { return collision.by_last_actions.at(i); };
+      row.push_back(percent(count(Verdict::kAvoidable, by_last), all));
+    }
+    row.push_back(percent(count(Verdict::kAvoidable, by_reacting), all));
+    row.push_back(per_1000(count(Verdict::kUnavoidable, by_reacting), record.steps));
+    row.push_back({grouped(count(Verdict::kUndecided, by_reacting))});
+    table.rows.push_back(std::move(row));
+  }
+  table.note =
+      "Collisions and floor per 1000 steps, intervals exact Poisson. By last k: the MoP's last k\n"
+      "actions, chosen with foresight, could have avoided it. By reacting: those chosen once the\n"
+      "other vehicle had visibly begun, or was in the way, could have. Floor: no such reaction\n"
+      "could have; that foresight or another way of driving avoids them is not excluded.";
   return table;
 }
 

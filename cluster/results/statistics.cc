@@ -10,6 +10,8 @@
 namespace corridor::cluster {
 namespace {
 
+constexpr double kTail = 0.5 * (1.0 - 0.95);  // at either end of an interval
+
 // P(X <= count) for X of mean `mean`. Each term comes from its logarithm: a recurrence from either
 // end of the sum would start from an underflow when mean and count are far apart.
 double poisson_cdf(std::int64_t count, double mean) {
@@ -20,15 +22,6 @@ double poisson_cdf(std::int64_t count, double mean) {
     sum += std::exp(x * std::log(mean) - mean - std::lgamma(x + 1.0));
   }
   return sum;
-}
-
-// The mean in [low, high] for which P(X <= count) = probability; it falls as the mean grows.
-double mean_with_cdf(std::int64_t count, double probability, double low, double high) {
-  for (int i = 0; i < 100; ++i) {
-    const double middle = 0.5 * (low + high);
-    (poisson_cdf(count, middle) > probability ? low : high) = middle;
-  }
-  return 0.5 * (low + high);
 }
 
 // P(X <= count) for X of `trials` trials that succeed with `probability`, in (0, 1).
@@ -43,12 +36,12 @@ double binomial_cdf(std::int64_t count, std::int64_t trials, double probability)
   return sum;
 }
 
-// The probability of success for which P(X <= count) = `probability`; it falls as that grows.
-double success_with_cdf(std::int64_t count, std::int64_t trials, double probability) {
-  double low = 0.0, high = 1.0;
+// Where in [low, high] a falling function has that value.
+template <typename Falling>
+double inverse(const Falling& function, double value, double low, double high) {
   for (int i = 0; i < 100; ++i) {
     const double middle = 0.5 * (low + high);
-    (binomial_cdf(count, trials, middle) > probability ? low : high) = middle;
+    (function(middle) > value ? low : high) = middle;
   }
   return 0.5 * (low + high);
 }
@@ -63,26 +56,30 @@ double quantile(const std::vector<double>& sorted, double probability) {
 
 }  // namespace
 
-Interval poisson_interval(std::int64_t count, double confidence) {
-  CORRIDOR_CHECK(count >= 0 && confidence > 0.0 && confidence < 1.0, "{} {}", count, confidence);
-  const double tail = 0.5 * (1.0 - confidence);
+Interval poisson_interval(std::int64_t count) {
+  CORRIDOR_CHECK(count >= 0, "{}", count);
+  // P(X <= most), by the mean.
+  const auto cdf_of = [](std::int64_t most) {
+    return [most](double mean) { return poisson_cdf(most, mean); };
+  };
   const auto seen = static_cast<double>(count);
-  // Beyond every upper end of confidence levels in use (ten deviations and a constant).
+  // Beyond every upper end (ten deviations and a constant).
   const double largest = seen + 10.0 * std::sqrt(seen) + 50.0;
-  return {count == 0 ? 0.0 : mean_with_cdf(count - 1, 1.0 - tail, 0.0, seen),
-          mean_with_cdf(count, tail, seen, largest)};
+  return {count == 0 ? 0.0 : inverse(cdf_of(count - 1), 1.0 - kTail, 0.0, seen),
+          inverse(cdf_of(count), kTail, seen, largest)};
 }
 
 Interval poisson_ratio_interval(std::int64_t count, double exposure, std::int64_t other_count,
-                                double other_exposure, double confidence) {
+                                double other_exposure) {
   const std::int64_t both = count + other_count;
-  CORRIDOR_CHECK(count >= 0 && other_count >= 0 && both > 0 && exposure > 0.0 &&
-                     other_exposure > 0.0 && confidence > 0.0 && confidence < 1.0,
-                 "{} in {}, {} in {}, {}", count, exposure, other_count, other_exposure,
-                 confidence);
-  const double tail = 0.5 * (1.0 - confidence);
-  const double low = count == 0 ? 0.0 : success_with_cdf(count - 1, both, 1.0 - tail);
-  const double high = other_count == 0 ? 1.0 : success_with_cdf(count, both, tail);
+  CORRIDOR_CHECK(
+      count >= 0 && other_count >= 0 && both > 0 && exposure > 0.0 && other_exposure > 0.0,
+      "{} in {}, {} in {}", count, exposure, other_count, other_exposure);
+  const auto cdf_of = [both](std::int64_t most) {
+    return [=](double probability) { return binomial_cdf(most, both, probability); };
+  };
+  const double low = count == 0 ? 0.0 : inverse(cdf_of(count - 1), 1.0 - kTail, 0.0, 1.0);
+  const double high = other_count == 0 ? 1.0 : inverse(cdf_of(count), kTail, 0.0, 1.0);
   const auto ratio = [&](double share) {
     return share / (1.0 - share) * other_exposure / exposure;
   };
@@ -135,12 +132,10 @@ std::vector<double> bootstrap_interquartile_means(std::span<const double> values
   return means;
 }
 
-Interval percentile_interval(std::vector<double> values, double confidence) {
-  CORRIDOR_CHECK(!values.empty() && confidence > 0.0 && confidence < 1.0, "{} values, {}",
-                 values.size(), confidence);
+Interval percentile_interval(std::vector<double> values) {
+  CORRIDOR_CHECK(!values.empty(), "of no values");
   std::sort(values.begin(), values.end());
-  const double tail = 0.5 * (1.0 - confidence);
-  return {quantile(values, tail), quantile(values, 1.0 - tail)};
+  return {quantile(values, kTail), quantile(values, 1.0 - kTail)};
 }
 
 }  // namespace corridor::cluster

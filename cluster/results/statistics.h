@@ -1,4 +1,4 @@
-// Confidence intervals for tables of results. Pure.
+// 95 % confidence intervals for tables of results. Pure.
 #pragma once
 
 #include <cstdint>
@@ -14,16 +14,16 @@ struct Interval {
 };
 
 // The exact interval (Garwood 1936) of the mean of a Poisson variable of which `count` was seen:
-// at either end an outcome as extreme as `count` has probability (1 - confidence) / 2.
+// at either end an outcome as extreme as `count` has probability 2.5 %.
 // count >= 0; cost: about 100 * count exponentials.
-Interval poisson_interval(std::int64_t count, double confidence = 0.95);
+Interval poisson_interval(std::int64_t count);
 
 // The exact interval (Przyborowski and Wilenski 1940) of the ratio of two Poisson rates: `count`
 // events were seen in `exposure`, independent of `other_count` in `other_exposure`. Given their
 // sum, `count` is binomial, and its interval is that of Clopper and Pearson. The high end is
 // infinite when other_count is 0. Counts >= 0, not both 0; exposures > 0.
 Interval poisson_ratio_interval(std::int64_t count, double exposure, std::int64_t other_count,
-                                double other_exposure, double confidence = 0.95);
+                                double other_exposure);
 
 // The mean of what is left without the lowest and the highest quarter of the values, rounded down
 // to whole values: of 5 the middle 3, of 3 all. At least one value. It is scipy's
@@ -45,7 +45,7 @@ std::vector<double> bootstrap_interquartile_means(std::span<const double> values
                                                   std::uint64_t seed, int resamples = kResamples);
 
 // Between the quantiles of a bootstrap's values: the percentile interval. At least one value.
-// Few units make it too narrow (tests/cluster/statistics_test.cc).
-Interval percentile_interval(std::vector<double> values, double confidence = 0.95);
+// Few units make it too narrow (tests/cluster/results/statistics_test.cc).
+Interval percentile_interval(std::vector<double> values);
 
 }  // namespace corridor::cluster

@@ -1,100 +1,66 @@
 #include "cluster/results/table.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "proto/base/format.h"
+#include "proto/base/text.h"
 
 namespace corridor::cluster {
 namespace {
 
-std::string joined(const Cell& cell) {
-  return cell.interval.empty() ? cell.text : cell.text + " " + cell.interval;
-}
-
-// "|" would end a cell of Markdown.
-std::string markdown_escaped(const std::string& text) {
-  std::string escaped;
-  for (const char c : text) escaped += c == '|' ? std::string("\\|") : std::string(1, c);
-  return escaped;
-}
-
-std::string padded(const std::string& text, std::size_t width, bool first) {
-  return first ? fmt::format("{:<{}}", text, width) : fmt::format("  {:>{}}", text, width);
-}
-
-std::string without_trailing_spaces(std::string line) {
-  line.erase(line.find_last_not_of(' ') + 1);
-  return line + "\n";
+// What the columns are, then the rows.
+std::vector<std::vector<std::string>> lines_of(const Table& table) {
+  std::vector<std::vector<std::string>> lines = {table.columns};
+  for (const auto& row : table.rows) {
+    lines.emplace_back();
+    for (const auto& [text, interval] : row)
+      lines.back().push_back(interval.empty() ? text : text + " " + interval);
+  }
+  return lines;
 }
 
 }  // namespace
 
 std::string text_of(const Table& table) {
-  std::vector<std::size_t> widths;
-  for (const std::string& column : table.columns) widths.push_back(column.size());
-  for (const auto& row : table.rows) {
-    for (std::size_t i = 0; i < row.size(); ++i) {
-      widths[i] = std::max(widths[i], joined(row[i]).size());
-    }
+  const auto lines = lines_of(table);
+  std::vector<std::size_t> widths(table.columns.size());
+  for (const auto& line : lines) {
+    for (std::size_t i = 0; i < line.size(); ++i) widths[i] = std::max(widths[i], line[i].size());
   }
-  std::string text = table.title.empty() ? "" : table.title + "\n";
-  std::string line;
-  for (std::size_t i = 0; i < widths.size(); ++i) {
-    line += padded(table.columns[i], widths[i], i == 0);
-  }
-  text += without_trailing_spaces(line);
-  for (const auto& row : table.rows) {
-    line.clear();
-    for (std::size_t i = 0; i < row.size(); ++i) {
-      line += padded(joined(row[i]), widths[i], i == 0);
-    }
-    text += without_trailing_spaces(line);
+  std::string text = table.title + "\n";
+  for (const auto& line : lines) {
+    text += fmt::format("{:<{}}", line[0], widths[0]);
+    for (std::size_t i = 1; i < line.size(); ++i)
+      text += fmt::format("  {:>{}}", line[i], widths[i]);
+    text.erase(text.find_last_not_of(' ') + 1);
+    text += '\n';
   }
   return table.note.empty() ? text : text + table.note + "\n";
 }
 
 std::string markdown_of(const Table& table) {
-  std::string text = table.title.empty() ? "" : "**" + table.title + "**\n\n";
-  std::string rule;
-  for (std::size_t i = 0; i < table.columns.size(); ++i) {
-    text += "| " + markdown_escaped(table.columns[i]) + " ";
-    rule += i == 0 ? "|---" : "|--:";
-  }
-  text += "|\n" + rule + "|\n";
-  for (const auto& row : table.rows) {
-    for (const Cell& cell : row) text += "| " + markdown_escaped(joined(cell)) + " ";
-    text += "|\n";
+  std::string text = "**" + table.title + "**\n\n";
+  std::string rule = "|---";
+  for (std::size_t i = 1; i < table.columns.size(); ++i) rule += "|--:";
+  rule += "|\n";
+  for (const auto& line : lines_of(table)) {
+    for (const std::string& cell : line) text += "| " + replaced(cell, '|', "\\|") + " ";
+    text += "|\n" + std::exchange(rule, "");
   }
   return table.note.empty() ? text : text + "\n" + table.note + "\n";
 }
 
 std::string html_escaped(const std::string& text) {
-  std::string escaped;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        escaped += "&amp;";
-        break;
-      case '<':
-        escaped += "&lt;";
-        break;
-      case '>':
-        escaped += "&gt;";
-        break;
-      case '"':
-        escaped += "&quot;";
-        break;
-      default:
-        escaped += c;
-    }
-  }
-  return escaped;
+  std::string escaped = replaced(text, '&', "&amp;");
+  escaped = replaced(escaped, '<', "&lt;");
+  escaped = replaced(escaped, '>', "&gt;");
+  return replaced(escaped, '"', "&quot;");
 }
 
 std::string html_of(const Table& table) {
-  std::string html = "<div class=\"table\"><table>\n";
-  if (!table.title.empty()) html += "<caption>" + html_escaped(table.title) + "</caption>\n";
-  html += "<thead><tr>";
+  std::string html = "<div class=\"table\"><table>\n<caption>" + html_escaped(table.title) +
+                     "</caption>\n<thead><tr>";
   for (const std::string& column : table.columns) {
     html += "<th scope=\"col\">" + html_escaped(column) + "</th>";
   }

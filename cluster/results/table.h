@@ -21,7 +21,7 @@ struct Table {
 // Each ends with the end of a line. Columns are aligned in the text; characters are bytes, ASCII.
 std::string text_of(const Table& table);
 std::string markdown_of(const Table& table);
-// <table class="..."> with a caption; what a cell says is escaped.
+// What a cell says is escaped.
 std::string html_of(const Table& table);
 
 // With &, <, > and " as HTML writes them.

@@ -7,12 +7,6 @@
 #include "proto/base/failure.h"
 
 namespace corridor::cluster {
-namespace {
-
-// Only the process's death leaves a line without its end (proto/run/metrics.h).
-bool torn(std::string_view line) { return line.empty() || line.back() != '}'; }
-
-}  // namespace
 
 ProcessMetrics parse_metrics(std::string_view text, const std::string& name) {
   ProcessMetrics lines;
@@ -22,7 +16,7 @@ ProcessMetrics parse_metrics(std::string_view text, const std::string& name) {
     text.remove_prefix(end + 1);
     if (auto parsed = parse_metrics_line(line)) {
       lines.push_back(std::move(*parsed));
-    } else if (!torn(line)) {
+    } else if (line.ends_with('}')) {  // only the process's death leaves a line without its end
       throw Failure("{}:{} is no line of metrics: the file is damaged; remove the line", name,
                     number);
     }

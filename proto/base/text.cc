@@ -32,4 +32,10 @@ std::string listed(const std::vector<std::string>& texts, std::string_view separ
   return list;
 }
 
+std::string replaced(const std::string& text, char from, std::string_view to) {
+  std::string result;
+  for (const char c : text) result += c == from ? to : std::string_view(&c, 1);
+  return result;
+}
+
 }  // namespace corridor

@@ -10,6 +10,9 @@
 
 namespace corridor {
 
+// What speeds are shown in.
+inline constexpr double kKphPerMps = 3.6;
+
 // 1400000 -> "1,400,000".
 std::string grouped(std::int64_t number);
 
@@ -18,6 +21,9 @@ std::string duration_text(double seconds);
 
 // "a, b, c".
 std::string listed(const std::vector<std::string>& texts, std::string_view separator = ", ");
+
+// With `to` in place of each `from`.
+std::string replaced(const std::string& text, char from, std::string_view to);
 
 // The number that the whole text is; nothing when it is none, or one that T does not hold.
 template <typename T>

@@ -3,16 +3,12 @@
 #include <algorithm>
 
 #include "proto/base/failure.h"
+#include "proto/base/text.h"
 #include "proto/run/json_record.h"
 #include "proto/settings/planner_pairs.h"
 #include "proto/system/files.h"
 
 namespace corridor {
-namespace {
-
-constexpr double kKphPerMps = 3.6;
-
-}  // namespace
 
 void EpisodeRecord::check() const {
   if (steps <= 0) throw Failure("an episode of no steps");

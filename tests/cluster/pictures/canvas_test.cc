@@ -94,12 +94,12 @@ TEST(Canvas, WritesTextOnItsLineAndTurnsItToTheLeft) {
     return false;
   };
   Canvas flat{100, 100};
-  flat.add(Text{{50, 50}, 20, "HHH", kInk, Anchor::kEnd});
+  flat.add(Text{{50, 50}, 20, "HHH", Anchor::kEnd});
   EXPECT_TRUE(inked(flat, 0, 50, 30, 50));
   EXPECT_FALSE(inked(flat, 52, 100, 0, 100)) << "it ends there";
   EXPECT_FALSE(inked(flat, 0, 100, 52, 100));
   Canvas turned{100, 100};
-  turned.add(Text{{50, 50}, 20, "HHH", kInk, Anchor::kStart, std::numbers::pi / 2});
+  turned.add(Text{{50, 50}, 20, "HHH", Anchor::kStart, kInk, std::numbers::pi / 2});
   EXPECT_TRUE(inked(turned, 30, 50, 0, 50));
   EXPECT_FALSE(inked(turned, 52, 100, 0, 100));
 }
@@ -110,7 +110,7 @@ TEST(Canvas, IsSvgWithTheSameShapes) {
   Canvas canvas{20, 10};
   canvas.inset({6, 3}, part);
   canvas.add(Line{{{0, 1}, {20, 1}}, kHit, 2.0, 6.0});
-  canvas.add(Text{{3, 4}, 13, "a < b & \"c\"", kInk, Anchor::kMiddle, std::numbers::pi / 2});
+  canvas.add(Text{{3, 4}, 13, "a < b & \"c\"", Anchor::kMiddle, kInk, std::numbers::pi / 2});
   const std::string svg = canvas.svg();
   EXPECT_THAT(svg, StartsWith("<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"20\" "
                               "height=\"10\" viewBox=\"0 0 20 10\""));

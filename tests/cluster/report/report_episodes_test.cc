@@ -26,6 +26,7 @@ EvaluationRecord evaluation(std::uint64_t seed, std::vector<EpisodeRecord> episo
   result.planner = "rules";
   result.seed = seed;
   result.per_episode = std::move(episodes);
+  for (std::size_t i = 0; i < result.per_episode.size(); ++i) result.per_episode[i].episode = i;
   return result;
 }
 

@@ -56,16 +56,17 @@ TEST(ReportPage, HoldsRunsFiguresTablesAndSettings) {
   run.evaluations[""] = {result("rules", 1, 1000)};
   other.evaluations["dense"] = {result("sumo", 1, 1000)};
   other.config.dqn[0].gamma = 0.5;
-  const std::string page =
-      report_page({{"paper", {run}}, {"paper (2)", {other}}},
-                  {{"what it shows", "<svg id=\"x\"/>"}}, {{"how it drives", "<svg id=\"y\"/>"}});
+  const std::string page = report_page(
+      {{"paper", {run}}, {"paper (2)", {other}}},
+      {{"x", "what <it> shows", "<?xml version=\"1.0\"?>\n<!DOCTYPE svg>\n<svg id=\"x\"/>", ""}},
+      {{"y", "how it drives", "<svg id=\"y\"/>", ""}});
   for (const char* part : {"corridor: paper, paper (2)", "0123456789abcdef", "<svg id=\"x\"/>",
-                           "what it shows", "how it drives", "Sums per 1000 steps",
+                           "what &lt;it&gt; shows", "how it drives", "Sums per 1000 steps",
                            "paper (2), driving in dense", "Table I", "&lt;fast&gt;", "1.15.0",
                            "gamma = 0.97", "mop.gamma = 0.5    # 0.97 in the first", "1,400,832"}) {
     EXPECT_THAT(page, HasSubstr(part));
   }
-  for (const char* foreign : {"http://", "https://", "<script", "src="}) {
+  for (const char* foreign : {"http://", "https://", "<script", "src=", "<?xml"}) {
     EXPECT_THAT(page, Not(HasSubstr(foreign))) << "the page needs nothing else";
   }
 }

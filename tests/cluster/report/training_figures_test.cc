@@ -48,7 +48,8 @@ TEST(TrainingFigures, ShowSeveralSeedsAsTheirMeanWithABand) {
   ASSERT_THAT(figures, SizeIs(1));
   ASSERT_THAT(figures[0].panels, SizeIs(1));
   const PlottedCurve& curve = figures[0].panels[0].curves.at(0);
-  EXPECT_THAT(curve.raw, ElementsAre(CurvePoint{10, 20.0}, CurvePoint{20, 40.0}));
+  EXPECT_THAT(curve.raw,
+              ElementsAre(BandPoint{10, 20.0, 10.0, 30.0}, BandPoint{20, 40.0, 20.0, 60.0}));
   EXPECT_THAT(curve.trend,
               ElementsAre(BandPoint{10, 20.0, 10.0, 30.0}, BandPoint{20, 40.0, 20.0, 60.0}));
   EXPECT_THAT(figures[0].caption, HasSubstr("2 training seeds"));

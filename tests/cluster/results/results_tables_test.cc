@@ -18,16 +18,17 @@ std::vector<Arm> arms() {
   hierarchical.distance_km = 6549.6;
   hierarchical.collisions = 1234;
   hierarchical.lane_shares = {0.721, 0.25, 0.029};
-  const auto set = [&](Quantity quantity, Estimate estimate) {
-    hierarchical.estimates[static_cast<std::size_t>(quantity)] = estimate;
-  };
-  set(Quantity::kBpReward, {523.4, {506.2, 541.0}});
-  set(Quantity::kCollisions, {2.0567, {1.945, 2.175}});
-  set(Quantity::kSpeed, {39.31, {39.0, 39.6}});
-  set(Quantity::kSideByOther, {1.5, {1.25, 1.75}});
-  set(Quantity::kCollisionsPerKm, {0.18841, {0.178, 0.1992}});
-  hierarchical.to_rules = Ratios{Estimate{1.214, {1.1, 1.3}}, std::nullopt};
+  for (int quantity = 0; quantity <= static_cast<int>(Quantity::kBypassesPerKm); ++quantity)
+    hierarchical.estimates[static_cast<Quantity>(quantity)] = {};
   Arm rules;
+  rules.estimates = hierarchical.estimates;
+  auto& estimates = hierarchical.estimates;
+  estimates[Quantity::kBpReward] = {523.4, {506.2, 541.0}};
+  estimates[Quantity::kCollisions] = {2.0567, {1.945, 2.175}};
+  estimates[Quantity::kSpeed] = {39.31, {39.0, 39.6}};
+  estimates[Quantity::kSideByOther] = {1.5, {1.25, 1.75}};
+  estimates[Quantity::kCollisionsPerKm] = {0.18841, {0.178, 0.1992}};
+  hierarchical.to_rules = Ratios{Estimate{1.214, {1.1, 1.3}}, std::nullopt};
   rules.planner = "rules";
   rules.evaluation_seeds = 3;
   return {hierarchical, rules};
@@ -82,6 +83,50 @@ TEST(PaperTable, IsThePapersTableI) {
   EXPECT_THAT(row_of(table, 0), ElementsAre("hierarchical RL", "699", "2.125", "25.0", "43.21"));
   EXPECT_THAT(row_of(table, 3),
               ElementsAre("SUMO controlling the ego", "511", "1.625", "88.3", "41.78"));
+}
+
+HindsightRecord record(const char* planner, std::uint64_t seed) {
+  const auto collision = [](Verdict by_last_1, Verdict by_last_2, Verdict by_reacting) {
+    CollisionHindsight hindsight;
+    hindsight.by_last_actions = {by_last_1, by_last_2};
+    hindsight.by_reacting = by_reacting;
+    return hindsight;
+  };
+  using enum Verdict;
+  return {planner,
+          seed,
+          2000,
+          {.actions = 2},
+          {collision(kAvoidable, kAvoidable, kUnavoidable),
+           collision(kUnavoidable, kAvoidable, kAvoidable),
+           collision(kUnavoidable, kUndecided, kUndecided),
+           collision(kUnavoidable, kUnavoidable, kUnavoidable)}};
+}
+
+TEST(HindsightTable, AddsUpThePlannersSeeds) {
+  const Table table = hindsight_table({record("rules", 7), record("sumo", 7), record("rules", 8)});
+  ASSERT_EQ(table.rows.size(), 2u);
+  EXPECT_EQ(table.columns.size(), table.rows[0].size());
+  EXPECT_EQ(table.rows[0][0].text, "rules");
+  EXPECT_EQ(table.rows[0][1].text, "2.00");  // 8 in 4000 steps
+  EXPECT_EQ(table.rows[0][2].text, "25.0");
+  EXPECT_EQ(table.rows[0][3].text, "50.0");
+  EXPECT_EQ(table.rows[0][4].text, "25.0");
+  EXPECT_EQ(table.rows[0][5].text, "1.00");
+  // Garwood's interval of 4 is [1.0899, 10.2416].
+  EXPECT_EQ(table.rows[0][5].interval, "[0.27, 2.56]");
+  EXPECT_EQ(table.rows[0][6].text, "2");
+  EXPECT_EQ(table.rows[1][0].text, "sumo");
+  EXPECT_EQ(table.rows[1][6].text, "1");
+}
+
+TEST(HindsightTable, WithoutCollisionsThereAreNoShares) {
+  HindsightRecord none = record("sumo", 7);
+  none.collisions.clear();
+  const Table table = hindsight_table({none});
+  EXPECT_EQ(table.rows[0][1].text, "0.00");
+  EXPECT_EQ(table.rows[0][2].text, "-");
+  EXPECT_EQ(table.rows[0][5].text, "0.00");
 }
 
 }  // namespace

@@ -39,11 +39,11 @@ TEST(Table, EscapesWhatHtmlWouldRead) {
             "</tbody></table><p class=\"note\">Of two.</p></div>\n");
 }
 
-TEST(Table, MayHaveNoTitleAndNoNote) {
-  const Table bare{"", {"a"}, {{{"1"}}}};
-  EXPECT_EQ(text_of(bare), "a\n1\n");
-  EXPECT_EQ(markdown_of(bare), "| a |\n|---|\n| 1 |\n");
-  EXPECT_EQ(html_of(bare).find("caption"), std::string::npos);
+TEST(Table, MayHaveNoNote) {
+  const Table bare{"T", {"a"}, {{{"1"}}}};
+  EXPECT_EQ(text_of(bare), "T\na\n1\n");
+  EXPECT_EQ(markdown_of(bare), "**T**\n\n| a |\n|---|\n| 1 |\n");
+  EXPECT_EQ(html_of(bare).find("note"), std::string::npos);
 }
 
 }  // namespace

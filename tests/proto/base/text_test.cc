@@ -37,5 +37,10 @@ TEST(Listed, PutsCommasBetween) {
   EXPECT_EQ(listed({"", "b"}, "-"), "-b");
 }
 
+TEST(Replaced, IsTheTextWithAnotherInPlaceOfEachCharacter) {
+  EXPECT_EQ(replaced("a|b||", '|', "\\|"), "a\\|b\\|\\|");
+  EXPECT_EQ(replaced("", '|', "x"), "");
+}
+
 }  // namespace
 }  // namespace corridor
