@@ -96,21 +96,21 @@ double draw_typical(Canvas& canvas, const EpisodeTrace& trace, double top) {
 double draw_failed(Canvas& canvas, const EpisodeTrace& trace, double top) {
   const std::size_t count = std::min(kShownInstants, trace.steps.size());
   const Clip clip{"", trace, 0.0, {}};
-  const double height = road_height(trace, kRoad);
   for (std::size_t i = 0; i < count; ++i) {
     const double before_s = static_cast<double>(count - 1 - i) * trace.step_s;
     const TracedStep& step = trace.steps[trace.steps.size() - count + i];
+    const Canvas road = road_from_above(clip, clip.duration_s() - before_s, kRoad);
     const std::string when = before_s == 0.0 ? "collision" : fmt::format("{:g} s before", before_s);
-    canvas.add(Text{{kLeft - 14, top + 0.4 * height}, 13, when, Anchor::kEnd});
+    canvas.add(Text{{kLeft - 14, top + 0.4 * road.height}, 13, when, Anchor::kEnd});
     if (step.command) {
-      canvas.add(Text{{kLeft - 14, top + 0.4 * height + 24},
+      canvas.add(Text{{kLeft - 14, top + 0.4 * road.height + 24},
                       13,
                       "BP: " + trace.command_name(*step.command),
                       Anchor::kEnd,
                       kFaint});
     }
-    canvas.inset({kLeft, top}, road_from_above(clip, clip.duration_s() - before_s, kRoad));
-    top += height + (i + 1 < count ? kStripGap : 0.0);
+    canvas.inset({kLeft, top}, road);
+    top += road.height + (i + 1 < count ? kStripGap : 0.0);
   }
   draw_axis(canvas, top, -kRoad.behind_m, kRoad.ahead_m, "m ahead of the ego");
   return top + kAxis;
@@ -148,8 +148,7 @@ std::string caption_of(const EpisodeFigure& figure) {
     text += fmt::format(
         " Before a collision, the first with its seed ({}, {}): dark blue is the ego, red the "
         "other vehicle, the numbers are km/h; light blue and yellow are the corridors that the "
-        "motion "
-        "planner was shown and the one it chose, the line is its trajectory.",
+        "motion planner was shown and the one it chose, the line is its trajectory.",
         figure.failed->name, replaced(kind, '_', " "));
   }
   return text;

@@ -202,14 +202,15 @@ void Frames::draw_history(Canvas& canvas, double time_s, double left, double top
 }
 
 Canvas Frames::at(double time_s) const {
-  const double top = kFrameTitleHeight + road_height(clip_.trace, kFrameRoad) + 20;
+  const Canvas road = road_from_above(clip_, time_s, kFrameRoad);
+  const double top = kFrameTitleHeight + road.height + 20;
   Canvas canvas{kFrameWidth, 2.0 * std::floor((top + kPanelHeight) / 2)};
   canvas.add(Text{{kFrameMargin, 28}, 17, clip_.title});
   canvas.add(Text{{kFrameWidth - kFrameMargin, 28},
                   17,
                   fmt::format("{:.1f} s", clip_.start_s + time_s),
                   Anchor::kEnd});
-  canvas.inset({kFrameMargin, kFrameTitleHeight}, road_from_above(clip_, time_s, kFrameRoad));
+  canvas.inset({kFrameMargin, kFrameTitleHeight}, road);
   const TracedStep& step = clip_.step_at(time_s);
   draw_bp_values(canvas, clip_.trace, step, kFrameMargin, top);
   draw_mop_values(canvas, clip_, step, kFrameMargin + 270, top);

@@ -13,17 +13,13 @@ constexpr double kEdge = 2.0;                    // pixels beside the road, for 
 constexpr double kMark_m = 3.0, kEvery_m = 9.0;  // of the marks between lanes
 constexpr double kSpeedSize = 13.0;              // pixels
 
-double pixels_per_m(const RoadView& view) { return view.width / (view.behind_m + view.ahead_m); }
-
-double road_m(const EpisodeTrace& trace) { return trace.lanes * trace.lane_width_m; }
-
 // Where the road's (s, d) are on the canvas.
 struct Place {
   double ego_s_m;
   double road_m;
   const RoadView& view;
 
-  double scale() const { return pixels_per_m(view); }
+  double scale() const { return view.width / (view.behind_m + view.ahead_m); }  // pixels a metre
   double x(double s_m) const { return (s_m - ego_s_m + view.behind_m) * scale(); }
   double y(double d_m) const { return kEdge + (road_m - d_m) * scale(); }
 };
@@ -104,15 +100,11 @@ void draw_vehicle(Canvas& canvas, const Place& place, const TracedVehicle& vehic
 
 }  // namespace
 
-double road_height(const EpisodeTrace& trace, const RoadView& view) {
-  return road_m(trace) * pixels_per_m(view) + 2 * kEdge;
-}
-
 Canvas road_from_above(const Clip& clip, double time_s, const RoadView& view) {
   const TracedScene scene = clip.scene_at(time_s);
   const TracedStep& step = clip.step_at(time_s);
-  const Place place{scene.ego.s_m, road_m(clip.trace), view};
-  Canvas canvas{view.width, road_height(clip.trace, view)};
+  const Place place{scene.ego.s_m, clip.trace.lanes * clip.trace.lane_width_m, view};
+  Canvas canvas{view.width, place.road_m * place.scale() + 2 * kEdge};
   canvas.rectangle(0.0, kEdge, canvas.width, canvas.height - 2 * kEdge, kAsphalt);
   if (step.decision) draw_corridors(canvas, place, step);
   draw_lane_lines(canvas, place, clip.trace);

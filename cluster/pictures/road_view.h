@@ -14,10 +14,7 @@ struct RoadView {
   bool hit_stands_out_before = false;      // whom the ego collides with; else only when it does
 };
 
-// Of such a view, in pixels.
-double road_height(const EpisodeTrace& trace, const RoadView& view);
-
-// At that time of the clip.
+// At that time of the clip; of one clip all are equally high.
 Canvas road_from_above(const Clip& clip, double time_s, const RoadView& view);
 
 }  // namespace corridor::cluster

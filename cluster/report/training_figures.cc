@@ -110,36 +110,34 @@ std::string window_text(const std::vector<RunGroup>& groups) {
 }
 
 void add_figures(std::vector<Figure>& figures, const std::vector<RunGroup>& groups, Phase phase) {
-  const bool mop = phase == Phase::kMop;
   const std::string prefix = named_network(phase).name + std::string("_");
   const std::string planner = phase_name(phase);
   std::vector<std::string> labels;
   for (const RunGroup& group : groups) labels.push_back(group.label);
-  const auto add = [&](const char* name, std::string caption, const char* trend, bool points,
-                       std::vector<Panel> panels) {
+  const auto add = [&](const char* name, const std::string& caption, Processes processes,
+                       const std::vector<Quantity>& quantities, bool averaged) {
+    std::vector<Panel> panels = panels_of(groups, processes, phase, quantities, averaged);
     if (panels.empty()) return;
-    figures.push_back({prefix + name, std::move(caption) + seeds_text(groups), labels, trend,
-                       "rules", points, std::move(panels)});
+    figures.push_back({prefix + name, caption + seeds_text(groups), labels,
+                       averaged ? "moving average" : "selection", "rules", !averaged,
+                       std::move(panels)});
   };
 
   add("training",
       fmt::format("Training of the {}: its reward and the collisions while exploring. {} Dashed: "
                   "the rules on held-out traffic{}.",
-                  planner, window_text(groups), mop ? ", under the same random BP" : ""),
-      "moving average", false,
-      panels_of(groups, &RunRecord::actors, phase, {kReward, kCollisions, kEpisode}, true));
+                  planner, window_text(groups),
+                  phase == Phase::kMop ? ", under the same random BP" : ""),
+      &RunRecord::actors, {kReward, kCollisions, kEpisode}, true);
   add("learning",
       fmt::format("What the learner of the {} says of its batches. {}", planner,
                   window_text(groups)),
-      "moving average", false,
-      panels_of(groups, &RunRecord::learner, phase, {kLoss, kQ, kRisk}, true));
+      &RunRecord::learner, {kLoss, kQ, kRisk}, true);
   add("selection",
       fmt::format("Greedy evaluations of the {} during training, on episodes of their own: the "
                   "networks of the best score are kept.",
                   planner),
-      "selection", true,
-      panels_of(groups, &RunRecord::learner, phase, {kGreedyReward, kGreedyCollisions, kScore},
-                false));
+      &RunRecord::learner, {kGreedyReward, kGreedyCollisions, kScore}, false);
 }
 
 }  // namespace

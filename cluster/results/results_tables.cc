@@ -105,8 +105,9 @@ Table distance_table(const std::vector<Arm>& arms) {
   return table;
 }
 
-std::optional<Table> ratio_table(const std::vector<Arm>& arms, const char* baseline,
-                                 std::optional<Ratios> Arm::*ratios, const PaperRow& paper) {
+// A table more, where there are such ratios.
+void add_ratios(std::vector<Table>& tables, const std::vector<Arm>& arms, const char* baseline,
+                std::optional<Ratios> Arm::*ratios, const PaperRow& paper) {
   Table table{fmt::format("Ratios to {}", baseline),
               {"planner", "BP reward", "collisions", "lane changes", "km/h", "hard brakes"},
               {}};
@@ -117,14 +118,14 @@ std::optional<Table> ratio_table(const std::vector<Arm>& arms, const char* basel
       row.push_back(ratio ? cell(*ratio, 2) : Cell{kNothing});
     table.rows.push_back(std::move(row));
   }
-  if (table.rows.empty()) return std::nullopt;
+  if (table.rows.empty()) return;
   std::vector<Cell> row = {{"the paper's hierarchical RL"}};
   for (std::size_t i = 0; i < paper.values.size(); ++i) {
     row.push_back({number(kPaperHierarchical.values[i] / paper.values[i], 2)});
   }
   row.push_back({kNothing});
   table.rows.push_back(std::move(row));
-  return table;
+  tables.push_back(std::move(table));
 }
 
 // All seeds of a planner as one record.
@@ -158,10 +159,8 @@ Cell percent(std::int64_t count, std::int64_t of) {
 
 std::vector<Table> results_tables(const std::vector<Arm>& arms) {
   std::vector<Table> tables = {sums_table(arms), kinds_table(arms), distance_table(arms)};
-  for (auto& table : {ratio_table(arms, kRules, &Arm::to_rules, kPaperRules),
-                      ratio_table(arms, kSumo, &Arm::to_sumo, kPaperSumo)}) {
-    if (table) tables.push_back(*table);
-  }
+  add_ratios(tables, arms, kRules, &Arm::to_rules, kPaperRules);
+  add_ratios(tables, arms, kSumo, &Arm::to_sumo, kPaperSumo);
   return tables;
 }
 

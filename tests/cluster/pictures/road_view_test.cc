@@ -44,7 +44,6 @@ auto is_box(double left, double top, double right, double bottom) {
 }
 
 TEST(RoadView, IsAsHighAsTheRoadWithItsEdgeLines) {
-  EXPECT_DOUBLE_EQ(road_height(driven_episode(1), kView), 100.0);
   const Canvas canvas = road_from_above(clip(2), 0.0, kView);
   EXPECT_DOUBLE_EQ(canvas.height, 100.0);
   EXPECT_DOUBLE_EQ(canvas.width, 1000.0);
