@@ -14,6 +14,7 @@
 #include "proto/base/json.h"
 #include "proto/config/run_config.h"
 #include "proto/run/actor_task.h"
+#include "proto/run/json_record.h"
 #include "proto/run/manifest.h"
 #include "proto/run/networks.h"
 #include "proto/system/identity.h"
@@ -86,7 +87,7 @@ int perform(const TraceTask& task, const Place& place) {
   if (task.networks) networks = newest_networks(RunDirectory::open(*task.networks), place.config);
   const EpisodeTrace trace = actor::trace_episode(place.config, networks ? &*networks : nullptr,
                                                   task.episode, place.world);
-  fmt::print("{}\n", to_json(trace).dump());
+  fmt::print("{}\n", json_of(trace).dump());
   return 0;
 }
 
@@ -95,7 +96,7 @@ int perform(const DriveTask& task, const Place& place) {
   const EpisodeTrace trace =
       actor::trace_drive(place.config, networks_for(pair, task.networks, place), pair,
                          actor::test_episode_seed(task.seed, task.index), task.steps, place.world);
-  fmt::print("{}\n", to_json(trace).dump());
+  fmt::print("{}\n", json_of(trace).dump());
   return 0;
 }
 

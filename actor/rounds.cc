@@ -130,9 +130,8 @@ class Trainer {
   void report(std::uint64_t round) {
     const std::int64_t lines_apart =
         std::max<std::int64_t>(1, kStepsPerMetricsLine / schedule_.steps_per_round());
-    const bool last = round + 1 == schedule_.rounds() ||
-                      schedule_.phase_of(round + 1) != schedule_.phase_of(round);
-    if (static_cast<std::int64_t>(round + 1) % lines_apart != 0 && !last) return;
+    const bool due = static_cast<std::int64_t>(round + 1) % lines_apart == 0;
+    if (!due && !schedule_.ends_phase(round)) return;
     const RolloutTotals totals = rollout_->take_totals();
     const auto steps = static_cast<double>(std::max<std::int64_t>(totals.steps, 1));
     std::vector<std::pair<std::string, double>> values = {
@@ -146,10 +145,8 @@ class Trainer {
       values.emplace_back(metric::kEpisodicReturn, totals.episodic_return / episodes);
       values.emplace_back(metric::kEpisodes, episodes);
     }
-    const Phase phase = schedule_.phase_of(round);
-    const std::int64_t phase_steps =
-        schedule_.phase_steps_before(round) + schedule_.steps_per_round();
-    metrics_.write(phase_name(phase), round, phase_steps, values);
+    metrics_.write(phase_name(schedule_.phase_of(round)), round, schedule_.phase_steps_after(round),
+                   values);
   }
 
   const RunConfig& config_;

@@ -8,31 +8,11 @@
 #include "proto/base/text.h"
 #include "proto/config/run_config.h"
 #include "proto/settings/schedule.h"
+#include "proto/system/files.h"
 #include "scenarios/sumo_files.h"
 
 namespace corridor::cluster {
 namespace {
-
-class TemporaryDirectory {
- public:
-  TemporaryDirectory()
-      : path_((std::filesystem::temp_directory_path() / "corridor-check-XXXXXX").string()) {
-    if (mkdtemp(path_.data()) == nullptr) {
-      throw Failure("cannot create {}: {}", path_, std::strerror(errno));
-    }
-  }
-  ~TemporaryDirectory() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  TemporaryDirectory(const TemporaryDirectory&) = delete;
-  TemporaryDirectory& operator=(const TemporaryDirectory&) = delete;
-
-  std::filesystem::path path() const { return path_; }
-
- private:
-  std::string path_;
-};
 
 std::string phase_line(const RunConfig& config, const Schedule& schedule, Phase phase) {
   const DqnSettings& dqn = config.phase(phase);
@@ -76,8 +56,12 @@ std::string summary(const RunConfig& config) {
 
 int check(const std::filesystem::path& scenario) {
   const RunConfig config = load_run_config(scenario);
-  const TemporaryDirectory directory;
-  scenarios::write_sumo_files(config, directory.path());
+  std::string folder = std::filesystem::temp_directory_path() / "corridor-check-XXXXXX";
+  if (mkdtemp(folder.data()) == nullptr) {
+    throw Failure("cannot create {}: {}", folder, std::strerror(errno));
+  }
+  const FolderInTheMaking never_kept(folder);
+  scenarios::write_sumo_files(config, folder);
   fmt::print("{}: ok\n{}", scenario.string(), summary(config));
   return 0;
 }

@@ -137,7 +137,7 @@ void declare_hindsight(CLI::App& app, Arguments& arguments) {
 }
 
 int run_fingerprint(const Arguments& arguments) {
-  const auto checkpoint = newest_checkpoint(RunDirectory::open(arguments.run));
+  const auto checkpoint = Checkpoints(RunDirectory::open(arguments.run).checkpoints()).newest();
   if (!checkpoint) throw Failure("{} has no checkpoint yet", arguments.run.string());
   fmt::print("{}\n", fingerprint(*checkpoint));
   return 0;

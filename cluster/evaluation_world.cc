@@ -6,7 +6,7 @@
 #include "proto/base/failure.h"
 #include "proto/config/config_values.h"
 #include "proto/config/run_config.h"
-#include "proto/run/fingerprint.h"
+#include "proto/run/checkpoints.h"
 #include "proto/run/manifest.h"
 #include "proto/settings/planner_pairs.h"
 #include "proto/settings/schedule.h"
@@ -102,7 +102,7 @@ void check_can_drive(const std::string& planner, const EvaluationPlace& place) {
   }
   if (!pair.learned()) return;
   if (std::filesystem::exists(place.trained.networks())) return;
-  const std::optional<Checkpoint> checkpoint = newest_checkpoint(place.trained);
+  const auto checkpoint = Checkpoints(place.trained.checkpoints()).newest();
   if (!checkpoint) {
     throw Failure(
         "planner '{}' drives with learned weights, and {} has no checkpoint yet: wait, "
@@ -110,11 +110,12 @@ void check_can_drive(const std::string& planner, const EvaluationPlace& place) {
         planner, place.trained.root().string());
   }
   const std::uint64_t bp_begins = Schedule(place.config).first_round(Phase::kBp);
-  if (pair.bp == BpKind::kLearned && checkpoint->rounds_done <= bp_begins) {
+  const std::uint64_t done = checkpoint_round(*checkpoint) + 1;
+  if (pair.bp == BpKind::kLearned && done <= bp_begins) {
     throw Failure(
         "planner '{}' drives with the learned BP, and {} has trained the MoP only, for "
         "{} rounds: wait, or choose --planners rules,rules+mop,sumo",
-        planner, place.trained.root().string(), checkpoint->rounds_done);
+        planner, place.trained.root().string(), done);
   }
 }
 

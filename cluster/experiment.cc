@@ -154,7 +154,7 @@ Table runs_table(const std::vector<TrainingRun>& runs) {
   Table table{"Training runs", {"run", "scenario", "training seed", "settings", "fingerprint"}, {}};
   for (const TrainingRun& run : runs) {
     const std::string settings = listed(run.training->settings);
-    const auto checkpoint = newest_checkpoint(RunDirectory::open(run.root));
+    const auto checkpoint = Checkpoints(RunDirectory::open(run.root).checkpoints()).newest();
     CORRIDOR_CHECK(checkpoint.has_value(), "{}", run.root.string());
     table.rows.push_back({{run.name()},
                           {run.training->scenario.filename().string()},

@@ -42,8 +42,7 @@ class TableReader {
   void refuse_unknown() const {
     for (const auto& [key, value] : table_.items()) {
       if (known_.contains(key)) continue;
-      throw Failure("{}: unknown key {}: known are {}", place_, key,
-                    listed({known_.begin(), known_.end()}));
+      throw Failure("{}: unknown key {}: known are {}", place_, key, listed(known_));
     }
   }
   const std::string& place() const { return place_; }

@@ -14,8 +14,8 @@ namespace corridor::cluster {
 void export_run(const std::filesystem::path& run, const std::filesystem::path& to) {
   const RunDirectory trained = RunDirectory::open(run);
   const RunConfig config = load_run_config(trained.config());
-  const auto checkpoint = newest_checkpoint(trained);
-  if (!checkpoint || checkpoint->rounds_done < Schedule(config).rounds()) {
+  const auto checkpoint = Checkpoints(trained.checkpoints()).newest();
+  if (!checkpoint || checkpoint_round(*checkpoint) + 1 < Schedule(config).rounds()) {
     throw Failure("the training of {} is not complete: go on with corridor resume {}", run.string(),
                   run.string());
   }

@@ -162,6 +162,7 @@ int resume(const ResumeOptions& options, const std::string& program) {
                   options.run.string());
   }
   const Descriptor lock = lock_run(directory);
+  directory.create_folders();
   const RunConfig config = changed_config(options, directory);
   for (const std::string& line : clean_up(directory)) {
     fmt::print("{}; the checkpoint before it is used\n", line);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "proto/base/failure.h"
+#include "proto/base/text.h"
 #include "proto/run/checkpoints.h"
 #include "proto/system/log.h"
 
@@ -124,7 +125,7 @@ bool Training::await_selection(std::uint64_t round) {
       throw Failure(
           "round {}: actors {} have not reported their evaluation in {} min: see their "
           "logs, then resume the run",
-          round, fmt::join(around_.publisher.awaited(round), ", "), kHangs.count());
+          round, listed(around_.publisher.awaited(round)), kHangs.count());
     }
     around_.publisher.service(kGlance);
     around_.time.charge(TimePart::kWaitForActors);
@@ -187,14 +188,12 @@ Training::BlockResult Training::train_block(std::uint64_t round, const Opened& o
 }
 
 void Training::finish_block(std::uint64_t round, std::uint32_t updates) {
-  const bool last_of_phase =
-      round + 1 == schedule_.first_round(phase_) + schedule_.rounds_of(phase_);
   Weights next = state_.published.back();
   next.version = round + 1;
   std::vector<float>& learned = next.networks[phase_];
   // What was published last is the average so far; a window never reaches back before the phase.
   const auto window_updates = static_cast<std::uint64_t>(dqn().averaging_updates);
-  learned = last_of_phase && state_.best
+  learned = schedule_.ends_phase(round) && state_.best
                 ? state_.best->parameters
                 : running_average(std::move(learned), td_->parameters(), updates,
                                   std::min(window_updates, td_->updates()));
@@ -244,13 +243,11 @@ void Training::report(std::uint64_t round, const Opened& opened, const BlockResu
   // finish_block may have begun the next phase.
   const Phase phase = schedule_.phase_of(round);
   const DqnSettings& settings = config_.phase(phase);
-  const std::int64_t steps = schedule_.phase_steps_before(round) + schedule_.steps_per_round();
   steps_since_report_ += schedule_.steps_per_round();
-  const bool phase_ends = phase != phase_ || round + 1 == schedule_.rounds();
   const std::int64_t every =
       std::max<std::int64_t>(1, kStepsPerReport / schedule_.steps_per_round());
   const auto rounds_done = static_cast<std::int64_t>(round - schedule_.first_round(phase) + 1);
-  if (!selected_ && !phase_ends && rounds_done % every != 0) return;
+  if (!selected_ && !schedule_.ends_phase(round) && rounds_done % every != 0) return;
 
   std::vector<std::pair<std::string, double>> values = {
       {metric::kStepsPerS, static_cast<double>(steps_since_report_) / around_.time.wall_s()},
@@ -270,7 +267,7 @@ void Training::report(std::uint64_t round, const Opened& opened, const BlockResu
                         static_cast<double>(selected_->collisions) / thousands);
     values.emplace_back(metric::kGreedyScore, score_);
   }
-  around_.metrics.write(phase_name(phase), round, steps, values);
+  around_.metrics.write(phase_name(phase), round, schedule_.phase_steps_after(round), values);
   steps_since_report_ = 0;
 }
 

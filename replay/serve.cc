@@ -4,6 +4,7 @@
 #include <optional>
 #include <utility>
 
+#include "proto/base/text.h"
 #include "proto/settings/schedule.h"
 #include "proto/system/log.h"
 #include "proto/system/time_account.h"
@@ -76,7 +77,7 @@ class Loop {
       opening_.reset();
     } else if (hooks_.clock() - opening_since_ > kSilence) {
       log_info("block {} waits for the chunks of actors {}", service_.next_round(),
-               fmt::join(service_.awaited(), " "));
+               listed(service_.awaited(), " "));
       opening_since_ = hooks_.clock();
     }
   }
@@ -88,8 +89,8 @@ class Loop {
     auto values = service_.metrics();
     for (auto& value : time_.take()) values.push_back(std::move(value));
     const std::uint64_t round = blocks - 1;
-    metrics_.write(phase_name(schedule_.phase_of(round)), round,
-                   schedule_.phase_steps_before(round) + schedule_.steps_per_round(), values);
+    metrics_.write(phase_name(schedule_.phase_of(round)), round, schedule_.phase_steps_after(round),
+                   values);
   }
 
   Server& server_;

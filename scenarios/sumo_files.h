@@ -14,8 +14,9 @@ namespace corridor::scenarios {
 
 // Writes road.nod.xml, road.edg.xml, traffic.rou.xml and road.sumocfg into `directory` (created
 // when missing), and has `netconvert` make road.net.xml from the first two. netconvert is looked
-// for in $SUMO_HOME/bin, then in PATH. All of it survives a power failure. Throws Failure when it is not there, refuses its input (with
-// the first line of its complaint), or has not ended by the deadline (it is killed then).
+// for in $SUMO_HOME/bin, then in PATH. All of it survives a power failure. Throws Failure when it
+// is not there, refuses its input (with the first line of its complaint), or has not ended by the
+// deadline (it is killed then).
 void write_sumo_files(const RunConfig& config, const std::filesystem::path& directory,
                       std::chrono::milliseconds netconvert_deadline = std::chrono::seconds(60));
 

@@ -16,7 +16,8 @@ EpisodeTrace traced_by_actor(const RunDirectory& directory, const ActorTask& tas
   if (driven->status != 0) {
     throw Failure("{}", driven->errors.substr(0, driven->errors.find('\n')));
   }
-  return parse_episode_trace(Json::parse(driven->output, nullptr, false), command);
+  return parse_record<EpisodeTrace>(Json::parse(driven->output, nullptr, false), command,
+                                    "episode's trace");
 }
 
 }  // namespace corridor::cluster

@@ -9,7 +9,7 @@ namespace corridor::cluster {
 namespace {
 
 Json described(const Clip& clip) {
-  Json json = to_json(clip.trace);
+  Json json = json_of(clip.trace);
   json["title"] = clip.title;
   json["start_s"] = clip.start_s;
   json["speed_changes_mps"] = clip.speed_changes_mps;

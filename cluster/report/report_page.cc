@@ -133,7 +133,7 @@ std::string evaluate_commands(const std::vector<EvaluationRecord>& results, cons
   for (const auto& [key, names] : planners) {
     const auto& [steps, of_planners] = key;
     text += fmt::format("corridor evaluate {}{} --planners {} --seeds {} --steps {}\n", run,
-                        scenario, listed(names, ","), fmt::join(of_planners, ","), steps);
+                        scenario, listed(names, ","), listed(of_planners, ","), steps);
   }
   return text;
 }

@@ -63,8 +63,8 @@ RunRecord read_run(const std::filesystem::path& root) {
     throw Failure("{} has no metrics of its actors yet: nothing was trained, or it has only begun",
                   root.string());
   }
-  if (const auto checkpoint = newest_checkpoint(directory)) {
-    run.rounds_done = checkpoint->rounds_done;
+  if (const auto checkpoint = Checkpoints(directory.checkpoints()).newest()) {
+    run.rounds_done = checkpoint_round(*checkpoint) + 1;
     run.fingerprint = fingerprint(*checkpoint);
   }
 

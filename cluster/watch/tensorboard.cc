@@ -27,7 +27,7 @@ std::string masked_crc(const std::string& data) {
 // The first number of which there is no file yet.
 std::filesystem::path next_file(const std::filesystem::path& folder) {
   for (int number = 1;; ++number) {
-    const auto file = folder / fmt::format("events.out.tfevents.{:06}", number);
+    auto file = folder / fmt::format("events.out.tfevents.{:06}", number);
     std::error_code unreadable;
     if (!std::filesystem::exists(file, unreadable)) return file;
   }

@@ -8,7 +8,6 @@
 #include <string>
 #include <string_view>
 #include <utility>
-#include <vector>
 
 #include "proto/base/failure.h"
 #include "proto/base/json_fwd.h"
@@ -37,15 +36,6 @@ T whole_number(const Json& value) {
   throw Failure("{} is no whole number from {} to {}",
                 value.is_number() ? value.dump() : value.type_name(), std::numeric_limits<T>::min(),
                 std::numeric_limits<T>::max());
-}
-
-// Of a list. Throws Failure likewise, or when the value is none.
-template <std::integral T>
-std::vector<T> whole_numbers(const Json& list) {
-  if (!list.is_array()) throw Failure("{} where a list belongs", list.type_name());
-  std::vector<T> numbers;
-  for (const Json& value : list) numbers.push_back(whole_number<T>(value));
-  return numbers;
 }
 
 }  // namespace corridor

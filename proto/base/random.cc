@@ -17,8 +17,7 @@ constexpr std::uint64_t absorb(std::uint64_t state, std::uint64_t index) {
   return mix((state ^ mix(index + kGolden)) + kGolden);
 }
 
-std::uint64_t begin(std::uint64_t seed, Purpose purpose,
-                    std::initializer_list<std::uint64_t> indices) {
+std::uint64_t begin(std::uint64_t seed, Purpose purpose, Indices indices) {
   std::uint64_t state = mix(seed + kGolden);
   state = mix((state ^ static_cast<std::uint64_t>(purpose)) + kGolden);
   for (const std::uint64_t index : indices) state = absorb(state, index);
@@ -33,18 +32,15 @@ constexpr double unit_of(std::uint64_t bits) { return static_cast<double>(bits >
 
 }  // namespace
 
-std::uint64_t random_bits(std::uint64_t seed, Purpose purpose,
-                          std::initializer_list<std::uint64_t> indices) {
+std::uint64_t random_bits(std::uint64_t seed, Purpose purpose, Indices indices) {
   return finish(begin(seed, purpose, indices), indices.size());
 }
 
-double random_unit(std::uint64_t seed, Purpose purpose,
-                   std::initializer_list<std::uint64_t> indices) {
+double random_unit(std::uint64_t seed, Purpose purpose, Indices indices) {
   return unit_of(random_bits(seed, purpose, indices));
 }
 
-RandomSequence::RandomSequence(std::uint64_t seed, Purpose purpose,
-                               std::initializer_list<std::uint64_t> first_indices)
+RandomSequence::RandomSequence(std::uint64_t seed, Purpose purpose, Indices first_indices)
     : state_(begin(seed, purpose, first_indices)), indices_(first_indices.size() + 1) {}
 
 double RandomSequence::unit(std::uint64_t index) const {
@@ -52,7 +48,7 @@ double RandomSequence::unit(std::uint64_t index) const {
 }
 
 std::uint64_t random_below(std::uint64_t bound, std::uint64_t seed, Purpose purpose,
-                           std::initializer_list<std::uint64_t> indices) {
+                           Indices indices) {
   const auto product = static_cast<unsigned __int128>(random_bits(seed, purpose, indices)) * bound;
   return static_cast<std::uint64_t>(product >> 64);
 }

@@ -29,19 +29,18 @@ enum class Purpose : std::uint64_t {
   kMeasurement = 16,      // (episode seed, instant, quantity, draw)
 };
 
+using Indices = std::initializer_list<std::uint64_t>;
+
 // 64 uniform bits. Cost: a few ns for each index.
-std::uint64_t random_bits(std::uint64_t seed, Purpose purpose,
-                          std::initializer_list<std::uint64_t> indices);
+std::uint64_t random_bits(std::uint64_t seed, Purpose purpose, Indices indices);
 
 // Uniform in [0, 1), 53 bits.
-double random_unit(std::uint64_t seed, Purpose purpose,
-                   std::initializer_list<std::uint64_t> indices);
+double random_unit(std::uint64_t seed, Purpose purpose, Indices indices);
 
 // The numbers that differ in their last index only: the first ones are absorbed once.
 class RandomSequence {
  public:
-  RandomSequence(std::uint64_t seed, Purpose purpose,
-                 std::initializer_list<std::uint64_t> first_indices);
+  RandomSequence(std::uint64_t seed, Purpose purpose, Indices first_indices);
   // random_unit(seed, purpose, {first_indices ..., index}).
   double unit(std::uint64_t index) const;
 
@@ -52,6 +51,6 @@ class RandomSequence {
 
 // Uniform in {0 .. bound-1}; bound >= 1. The bias is below bound / 2^64.
 std::uint64_t random_below(std::uint64_t bound, std::uint64_t seed, Purpose purpose,
-                           std::initializer_list<std::uint64_t> indices);
+                           Indices indices);
 
 }  // namespace corridor

@@ -2,8 +2,6 @@
 
 #include <cmath>
 
-#include "proto/base/format.h"
-
 namespace corridor {
 
 std::string grouped(std::int64_t number) {
@@ -21,15 +19,6 @@ std::string duration_text(double seconds) {
   if (whole < 60) return fmt::format("{} s", whole);
   if (whole < 3600) return fmt::format("{} min {:02d} s", whole / 60, whole % 60);
   return fmt::format("{} h {:02d} min", whole / 3600, whole / 60 % 60);
-}
-
-std::string listed(const std::vector<std::string>& texts, std::string_view separator) {
-  std::string list;
-  for (const std::string& text : texts) {
-    if (&text != &texts.front()) list += separator;
-    list += text;
-  }
-  return list;
 }
 
 std::string replaced(const std::string& text, char from, std::string_view to) {

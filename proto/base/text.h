@@ -6,7 +6,8 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <vector>
+
+#include "proto/base/format.h"
 
 namespace corridor {
 
@@ -20,7 +21,16 @@ std::string grouped(std::int64_t number);
 std::string duration_text(double seconds);
 
 // "a, b, c".
-std::string listed(const std::vector<std::string>& texts, std::string_view separator = ", ");
+template <typename List>
+std::string listed(const List& values, std::string_view separator = ", ") {
+  std::string list;
+  std::string_view before;
+  for (const auto& value : values) {
+    list += fmt::format("{}{}", before, value);
+    before = separator;
+  }
+  return list;
+}
 
 // With `to` in place of each `from`.
 std::string replaced(const std::string& text, char from, std::string_view to);

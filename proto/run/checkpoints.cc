@@ -9,7 +9,6 @@
 #include "proto/base/hash.h"
 #include "proto/base/json.h"
 #include "proto/base/text.h"
-#include "proto/run/run_directory.h"
 #include "proto/system/files.h"
 #include "proto/system/pulse.h"
 
@@ -27,6 +26,7 @@ std::optional<std::uint64_t> round_of(const fs::path& path) {
 // Ascending.
 std::vector<std::uint64_t> rounds_in(const fs::path& directory) {
   std::vector<std::uint64_t> rounds;
+  if (!fs::exists(directory)) return rounds;  // an exported run has none
   for (const auto& entry : fs::directory_iterator(directory)) {
     const auto round = round_of(entry.path());
     if (round && entry.is_directory()) rounds.push_back(*round);
@@ -66,11 +66,6 @@ std::string read_checked(const fs::path& file, const Json& expected) {
   return content;
 }
 
-// The manifest of the newest checkpoint, from which files that it shares need not be read again.
-Json known_files(const std::optional<fs::path>& checkpoint) {
-  return checkpoint ? files_of(*checkpoint) : Json::object();
-}
-
 }  // namespace
 
 fs::path Checkpoints::begin(std::uint64_t round) const {
@@ -86,8 +81,9 @@ void Checkpoints::commit(std::uint64_t round, int kept) const {
   const fs::path partial = directory_ / (std::to_string(round) + ".partial");
   const fs::path whole = directory_ / std::to_string(round);
   on_disk("complete checkpoint", partial, [&] {
+    // Files that the newest checkpoint has too need not be read again.
     const std::optional<fs::path> before = newest();
-    const Json known = known_files(before);
+    const Json known = before ? files_of(*before) : Json::object();
     Json files = Json::object();
     for (const auto& entry : fs::directory_iterator(partial)) {
       const std::string name = entry.path().filename().string();
@@ -104,18 +100,14 @@ void Checkpoints::commit(std::uint64_t round, int kept) const {
     fs::rename(partial, whole);
     sync_directory(directory_);
 
+    std::vector<std::uint64_t> stay = rounds_in(directory_);
+    std::erase_if(stay, [&](std::uint64_t found) { return found > round; });
+    const auto most = std::max<std::ptrdiff_t>(kept, 1);
+    if (std::ssize(stay) > most) stay.erase(stay.begin(), stay.end() - most);
     std::vector<fs::path> doomed;
-    std::vector<fs::path> earlier;
-    for (const std::uint64_t found : rounds_in(directory_)) {
-      if (found < round) earlier.push_back(directory_ / std::to_string(found));
-    }
-    const auto earlier_kept =
-        std::min(earlier.size(), static_cast<std::size_t>(std::max(kept, 1) - 1));
-    earlier.erase(earlier.begin(), earlier.end() - static_cast<std::ptrdiff_t>(earlier_kept));
     for (const auto& entry : fs::directory_iterator(directory_)) {
-      const bool stays = entry.path() == whole ||
-                         std::find(earlier.begin(), earlier.end(), entry.path()) != earlier.end();
-      if (!stays) doomed.push_back(entry.path());
+      const auto found = round_of(entry.path());
+      if (!found || !std::ranges::binary_search(stay, *found)) doomed.push_back(entry.path());
     }
     for (const fs::path& path : doomed) fs::remove_all(path);
   });
@@ -169,6 +161,11 @@ std::uint64_t checkpoint_round(const fs::path& checkpoint) {
   const auto round = round_of(checkpoint);
   CORRIDOR_CHECK(round, "{} is no checkpoint", checkpoint.string());
   return *round;
+}
+
+std::uint64_t rounds_done(const RunDirectory& directory) {
+  const auto newest = Checkpoints(directory.checkpoints()).newest();
+  return newest ? checkpoint_round(*newest) + 1 : 0;
 }
 
 TensorFile read_checkpoint_file(const fs::path& checkpoint, const std::string& name) {

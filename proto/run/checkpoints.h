@@ -17,6 +17,7 @@
 #include <string>
 #include <vector>
 
+#include "proto/run/run_directory.h"
 #include "proto/run/tensor_file.h"
 
 namespace corridor {
@@ -57,6 +58,8 @@ class Checkpoints {
 
 // checkpoints/<round> -> round.
 std::uint64_t checkpoint_round(const std::filesystem::path& checkpoint);
+// Rounds 0 .. n-1 are in the newest one; 0 when there is none yet.
+std::uint64_t rounds_done(const RunDirectory& directory);
 
 // One file of a checkpoint, checked against the manifest. Throws Failure naming it when it is
 // missing or damaged.

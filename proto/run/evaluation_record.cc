@@ -63,12 +63,8 @@ void write_evaluation(const RunDirectory& directory, const EvaluationRecord& rec
   write_file(directory.evaluation(record.name()), json_of(record).dump(1));
 }
 
-EvaluationRecord parse_evaluation(const Json& json, const std::string& name) {
-  return parse_record<EvaluationRecord>(json, name, "evaluation");
-}
-
 EvaluationRecord read_evaluation(const std::filesystem::path& file) {
-  return parse_evaluation(read_json(file), file.string());
+  return parse_record<EvaluationRecord>(read_json(file), file.string(), "evaluation");
 }
 
 std::vector<EvaluationRecord> read_evaluations(const std::filesystem::path& folder) {

@@ -108,9 +108,8 @@ OrderedJson totals_json(const EvaluationRecord& record);
 // Throws Failure when the disk is full.
 void write_evaluation(const RunDirectory& directory, const EvaluationRecord& record);
 
-// Throws Failure naming `name` (the file) when a member is missing or wrong, when there is no such
-// planner pair, or no episode.
-EvaluationRecord parse_evaluation(const Json& json, const std::string& name);
+// Throws Failure naming the file when a member is missing or wrong, when there is no such planner
+// pair, or no episode.
 EvaluationRecord read_evaluation(const std::filesystem::path& file);
 // All in RunDirectory::evaluation(), by file name; none where there is no such folder.
 std::vector<EvaluationRecord> read_evaluations(const std::filesystem::path& folder);

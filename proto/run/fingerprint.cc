@@ -5,7 +5,6 @@
 
 #include "proto/base/failure.h"
 #include "proto/base/hash.h"
-#include "proto/run/checkpoints.h"
 
 namespace corridor {
 namespace {
@@ -55,17 +54,6 @@ TensorFile whole_replay(const std::filesystem::path& checkpoint) {
 
 }  // namespace
 
-std::optional<Checkpoint> newest_checkpoint(const RunDirectory& directory) {
-  const auto found = Checkpoints(directory.checkpoints()).newest();
-  if (!found) return std::nullopt;
-  return Checkpoint{*found, checkpoint_round(*found) + 1};
-}
-
-std::uint64_t rounds_done(const RunDirectory& directory) {
-  const std::optional<Checkpoint> checkpoint = newest_checkpoint(directory);
-  return checkpoint ? checkpoint->rounds_done : 0;
-}
-
 std::string fingerprint(const TensorFile& learner, const TensorFile& replay) {
   Hash hash;
   add(hash, learner);
@@ -73,9 +61,8 @@ std::string fingerprint(const TensorFile& learner, const TensorFile& replay) {
   return hash.hex();
 }
 
-std::string fingerprint(const Checkpoint& checkpoint) {
-  return fingerprint(read_checkpoint_file(checkpoint.directory, kLearnerFile),
-                     whole_replay(checkpoint.directory));
+std::string fingerprint(const std::filesystem::path& checkpoint) {
+  return fingerprint(read_checkpoint_file(checkpoint, kLearnerFile), whole_replay(checkpoint));
 }
 
 }  // namespace corridor

@@ -7,7 +7,8 @@
 //   void check() const;  // if there is one: throws Failure for what no such record can hold
 //
 // Members are numbers, texts, enums with names (proto/settings/choices.h), records, lists of these,
-// and optional ones (null). Pure.
+// and optional ones: null where there is none, or, with `field("at", self.at, kLeftOut)`, not there
+// at all. Pure.
 #pragma once
 
 #include <concepts>
@@ -20,9 +21,12 @@
 
 namespace corridor {
 
+struct LeftOut {};
+inline constexpr LeftOut kLeftOut;
+
 template <typename T>
 concept JsonRecord = requires(T& record) {
-  T::fields(record, [](const char*, auto&) {});
+  T::fields(record, [](const char*, auto&, auto...) {});
 };
 template <typename T>
 concept JsonOptional = requires(T& value) {
@@ -31,7 +35,7 @@ concept JsonOptional = requires(T& value) {
 };
 template <typename T>
 concept JsonList = requires(T& value) {
-  value.emplace_back();
+  { value.emplace_back() } -> std::same_as<typename T::value_type&>;  // not so of bits
 };
 
 // J: Json, or OrderedJson for the members' own order.
@@ -39,8 +43,12 @@ template <typename J = Json, typename T>
 J json_of(const T& value) {
   if constexpr (JsonRecord<const T>) {
     J object = J::object();
-    T::fields(value,
-              [&](const char* name, const auto& member) { object[name] = json_of<J>(member); });
+    T::fields(value, [&](const char* name, const auto& member, auto... left_out) {
+      if constexpr (sizeof...(left_out) > 0) {
+        if (!member) return;
+      }
+      object[name] = json_of<J>(member);
+    });
     return object;
   } else if constexpr (JsonOptional<T>) {
     return value ? json_of<J>(*value) : J(nullptr);
@@ -59,7 +67,8 @@ J json_of(const T& value) {
 template <typename J, typename T>
 void read_value(const J& json, T& into) {
   if constexpr (JsonRecord<T>) {
-    T::fields(into, [&](const char* name, auto& member) {
+    T::fields(into, [&](const char* name, auto& member, auto... left_out) {
+      if (sizeof...(left_out) > 0 && !json.contains(name)) return;
       const auto& value = json.at(name);
       try {
         read_value(value, member);
@@ -71,8 +80,6 @@ void read_value(const J& json, T& into) {
   } else if constexpr (JsonOptional<T>) {
     into.reset();
     if (!json.is_null()) read_value(json, into.emplace());
-  } else if constexpr (std::is_same_v<T, std::string>) {
-    json.get_to(into);
   } else if constexpr (JsonList<T>) {
     if (!json.is_array()) throw Failure("{} where a list belongs", json.type_name());
     into.clear();

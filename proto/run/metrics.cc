@@ -53,14 +53,14 @@ double value_of(const MetricsValues& values, std::string_view name) {
 
 std::optional<MetricsLine> parse_metrics_line(std::string_view text) {
   const Json json = Json::parse(text, nullptr, /*allow_exceptions=*/false);
-  if (!json.is_object()) return std::nullopt;
-  const auto phase = json.find("phase"), round = json.find("round"), step = json.find("step");
-  if (phase == json.end() || !phase->is_string() || round == json.end() ||
-      !round->is_number_unsigned() || step == json.end() || !step->is_number_integer()) {
+  MetricsLine line;
+  try {
+    json.at("phase").get_to(line.phase);
+    line.round = whole_number<std::uint64_t>(json.at("round"));
+    line.step = whole_number<std::int64_t>(json.at("step"));
+  } catch (const std::exception&) {
     return std::nullopt;
   }
-  MetricsLine line{
-      phase->get<std::string>(), round->get<std::uint64_t>(), step->get<std::int64_t>(), {}};
   for (const auto& [name, value] : json.items()) {
     // What was not finite is null.
     if (value.is_number() && name != "round" && name != "step") line.values[name] = value;

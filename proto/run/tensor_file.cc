@@ -5,9 +5,8 @@
 #include <cstring>
 #include <string_view>
 
-#include "proto/base/failure.h"
-#include "proto/base/json.h"
-#include "proto/run/run_directory.h"
+#include "proto/base/text.h"
+#include "proto/run/json_record.h"
 #include "proto/system/files.h"
 
 namespace corridor {
@@ -18,17 +17,9 @@ static_assert(std::endian::native == std::endian::little, "the format's numbers 
 constexpr std::size_t kLengthBytes = 8;
 constexpr const char* kMetadataKey = "__metadata__";
 
-// The format's name of each type in TensorData.
-template <typename T>
-constexpr const char* kTypeName = nullptr;
-template <>
-constexpr const char* kTypeName<float> = "F32";
-template <>
-constexpr const char* kTypeName<double> = "F64";
-template <>
-constexpr const char* kTypeName<std::uint64_t> = "U64";
-template <>
-constexpr const char* kTypeName<std::uint8_t> = "U8";
+std::size_t size_of(const TensorData& data) {
+  return std::visit([](const auto& values) { return values.size(); }, data);
+}
 
 std::string_view bytes_of(const TensorData& data) {
   return std::visit(
@@ -48,11 +39,11 @@ std::vector<T> values_from(std::string_view bytes) {
 }
 
 TensorData data_from(const std::string& type, std::string_view bytes) {
-  if (type == kTypeName<float>) return values_from<float>(bytes);
-  if (type == kTypeName<double>) return values_from<double>(bytes);
-  if (type == kTypeName<std::uint64_t>) return values_from<std::uint64_t>(bytes);
-  if (type == kTypeName<std::uint8_t>) return values_from<std::uint8_t>(bytes);
-  throw Failure("type {} is none of F32, F64, U64, U8", type);
+  if (type == tensor_type<float>()) return values_from<float>(bytes);
+  if (type == tensor_type<double>()) return values_from<double>(bytes);
+  if (type == tensor_type<std::uint64_t>()) return values_from<std::uint64_t>(bytes);
+  if (type == tensor_type<std::uint8_t>()) return values_from<std::uint8_t>(bytes);
+  throw Failure("type {} is none of {}", type, listed(kTensorTypes));
 }
 
 // Values that a shape asks for; nothing when more than `limit`.
@@ -67,11 +58,13 @@ std::optional<std::size_t> value_count(const std::vector<std::size_t>& shape, st
 struct Extent {
   std::size_t begin = 0;
   std::size_t end = 0;
+  auto operator<=>(const Extent&) const = default;
 };
 
 // One entry of the header. Its numbers may lie.
 Tensor tensor_from(const Json& entry, std::string_view data, std::vector<Extent>& extents) {
-  const std::vector<std::size_t> offsets = whole_numbers<std::size_t>(entry.at("data_offsets"));
+  std::vector<std::size_t> offsets;
+  read_value(entry.at("data_offsets"), offsets);
   if (offsets.size() != 2) throw Failure("it has {} offsets", offsets.size());
   const Extent extent{offsets[0], offsets[1]};
   if (extent.begin > extent.end || extent.end > data.size()) {
@@ -79,11 +72,11 @@ Tensor tensor_from(const Json& entry, std::string_view data, std::vector<Extent>
   }
   extents.push_back(extent);
   const std::string_view bytes = data.substr(extent.begin, extent.end - extent.begin);
-  Tensor tensor{whole_numbers<std::size_t>(entry.at("shape")),
-                data_from(entry.at("dtype").get<std::string>(), bytes)};
-  const auto [size, width] = std::visit(
-      [](const auto& values) { return std::pair(values.size(), sizeof(values[0])); }, tensor.data);
-  if (value_count(tensor.shape, size) != size || size * width != bytes.size()) {
+  Tensor tensor;
+  read_value(entry.at("shape"), tensor.shape);
+  tensor.data = data_from(entry.at("dtype").get<std::string>(), bytes);
+  const std::size_t size = size_of(tensor.data);
+  if (value_count(tensor.shape, size) != size || bytes_of(tensor.data).size() != bytes.size()) {
     throw Failure("its shape does not fit its {} bytes", bytes.size());
   }
   return tensor;
@@ -91,9 +84,7 @@ Tensor tensor_from(const Json& entry, std::string_view data, std::vector<Extent>
 
 // As safetensors demands: every byte of the data belongs to exactly one tensor.
 void check_cover(std::vector<Extent> extents, std::size_t data_bytes) {
-  std::sort(extents.begin(), extents.end(), [](const Extent& a, const Extent& b) {
-    return std::pair(a.begin, a.end) < std::pair(b.begin, b.end);
-  });
+  std::ranges::sort(extents);
   std::size_t covered = 0;
   for (const Extent& extent : extents) {
     if (extent.begin != covered) throw Failure("tensors overlap or leave a gap");
@@ -134,34 +125,17 @@ TensorFile parse(std::string_view content) {
 
 }  // namespace
 
-template <typename T>
-const std::vector<T>& TensorFile::get(const std::string& name, const std::string& file) const {
-  const auto found = tensors.find(name);
-  if (found == tensors.end()) throw Failure("{} has no tensor {}", file, name);
-  const auto* values = std::get_if<std::vector<T>>(&found->second.data);
-  if (!values) throw Failure("{}: tensor {} is not of type {}", file, name, kTypeName<T>);
-  return *values;
-}
-
-template const std::vector<float>& TensorFile::get(const std::string&, const std::string&) const;
-template const std::vector<double>& TensorFile::get(const std::string&, const std::string&) const;
-template const std::vector<std::uint64_t>& TensorFile::get(const std::string&,
-                                                           const std::string&) const;
-template const std::vector<std::uint8_t>& TensorFile::get(const std::string&,
-                                                          const std::string&) const;
-
 void write_tensors(const std::filesystem::path& file, const TensorFile& content) {
   Json header = Json::object();
   if (!content.metadata.empty()) header[kMetadataKey] = content.metadata;
   std::size_t offset = 0;
   for (const auto& [name, tensor] : content.tensors) {
-    const char* type =
-        std::visit([](const auto& values) { return kTypeName<std::decay_t<decltype(values[0])>>; },
-                   tensor.data);
-    const std::size_t size = std::visit([](const auto& v) { return v.size(); }, tensor.data);
+    const std::size_t size = size_of(tensor.data);
     CORRIDOR_CHECK(value_count(tensor.shape, size) == size, "tensor {} has {} values", name, size);
     const std::size_t end = offset + bytes_of(tensor.data).size();
-    header[name] = {{"dtype", type}, {"shape", tensor.shape}, {"data_offsets", {offset, end}}};
+    header[name] = {{"dtype", kTensorTypes[tensor.data.index()]},
+                    {"shape", tensor.shape},
+                    {"data_offsets", {offset, end}}};
     offset = end;
   }
 

@@ -2,6 +2,7 @@
 // little-endian data), which Python reads with `safetensors` or a few lines of NumPy.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -10,10 +11,20 @@
 #include <variant>
 #include <vector>
 
+#include "proto/base/failure.h"
+
 namespace corridor {
 
 using TensorData = std::variant<std::vector<float>, std::vector<double>, std::vector<std::uint64_t>,
                                 std::vector<std::uint8_t>>;
+
+// The format's names of these types, in this order.
+inline constexpr std::array kTensorTypes = {"F32", "F64", "U64", "U8"};
+static_assert(kTensorTypes.size() == std::variant_size_v<TensorData>);
+template <typename T>
+const char* tensor_type() {
+  return kTensorTypes[TensorData(std::vector<T>()).index()];
+}
 
 struct Tensor {
   std::vector<std::size_t> shape;
@@ -34,7 +45,13 @@ struct TensorFile {
   }
   // Throws Failure when missing or of another type; `file` names it in the message.
   template <typename T>
-  const std::vector<T>& get(const std::string& name, const std::string& file) const;
+  const std::vector<T>& get(const std::string& name, const std::string& file) const {
+    const auto found = tensors.find(name);
+    if (found == tensors.end()) throw Failure("{} has no tensor {}", file, name);
+    const auto* values = std::get_if<std::vector<T>>(&found->second.data);
+    if (!values) throw Failure("{}: tensor {} is not of type {}", file, name, tensor_type<T>());
+    return *values;
+  }
 
   bool operator==(const TensorFile&) const = default;
 };

@@ -2,10 +2,11 @@
 #pragma once
 
 #include <array>
-#include <string>
+#include <ranges>
 #include <string_view>
 
 #include "proto/base/failure.h"
+#include "proto/base/text.h"
 
 namespace corridor {
 
@@ -75,15 +76,13 @@ const char* name_of(E value) {
 // Throws Failure that says what would be right, "must be one of cpu, cuda"; the caller says where.
 template <typename E>
 E parse_choice(std::string_view name) {
-  std::string known;
   for (const Choice<E>& choice : kChoices<E>) {
     if (name == choice.name) return choice.value;
     if (choice.formerly && name == choice.formerly) {
       throw Failure("it is called \"{}\" now", choice.name);
     }
-    known += fmt::format("{}{}", known.empty() ? "" : ", ", choice.name);
   }
-  throw Failure("must be one of {}", known);
+  throw Failure("must be one of {}", listed(std::views::transform(kChoices<E>, &Choice<E>::name)));
 }
 
 }  // namespace corridor

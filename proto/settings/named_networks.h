@@ -1,5 +1,5 @@
 // The networks of a run, by name, in the order in which they are trained. A further one needs an id
-// and a row here, its shape, and what its phase trains it on (actor/rollout.h).
+// and a row here, its shape (RunConfig::shape), and what its phase trains it on (actor/rollout.h).
 #pragma once
 
 #include <array>
@@ -7,11 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "proto/settings/transition.h"
-
 namespace corridor {
-
-struct RunConfig;
 
 // Each network is trained in a phase of its own, so one id names both.
 enum class NetworkId : std::uint8_t { kMop = 0, kBp = 1 };
@@ -21,15 +17,11 @@ struct NamedNetwork {
   NetworkId id;            // its place in the table
   const char* name;        // of its tensors and of its table in a scenario
   const char* phase_name;  // in metrics, and to people
-  PlannerShape (*shape)(const RunConfig& config);
 };
 
-PlannerShape mop_shape(const RunConfig& config);
-PlannerShape bp_shape(const RunConfig& config);
-
 inline constexpr std::array kNetworks = {
-    NamedNetwork{NetworkId::kMop, "mop", "MoP", mop_shape},
-    NamedNetwork{NetworkId::kBp, "bp", "BP", bp_shape},
+    NamedNetwork{NetworkId::kMop, "mop", "MoP"},
+    NamedNetwork{NetworkId::kBp, "bp", "BP"},
 };
 
 inline constexpr const NamedNetwork& named_network(NetworkId id) {

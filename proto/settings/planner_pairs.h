@@ -3,8 +3,12 @@
 // those under the BP of MoP training. What the command may ask an actor for.
 #pragma once
 
+#include <algorithm>
+#include <ranges>
 #include <string_view>
 
+#include "proto/base/failure.h"
+#include "proto/base/text.h"
 #include "proto/settings/choices.h"
 
 namespace corridor {
@@ -59,6 +63,11 @@ inline constexpr PlannerPair kPlannerPairs[] = {
 };
 
 // Throws Failure naming the pairs that there are.
-const PlannerPair& planner_pair(std::string_view name);
+inline const PlannerPair& planner_pair(std::string_view name) {
+  const auto found = std::ranges::find(kPlannerPairs, name, &PlannerPair::name);
+  if (found != std::end(kPlannerPairs)) return *found;
+  throw Failure("there is no planner '{}'; choose among {}", name,
+                listed(std::views::transform(kPlannerPairs, &PlannerPair::name)));
+}
 
 }  // namespace corridor

@@ -24,26 +24,18 @@ Schedule::Schedule(const RunConfig& config)
   }
 }
 
-std::uint64_t Schedule::rounds() const { return starts_.back(); }
-
-std::uint64_t Schedule::first_round(Phase phase) const {
-  return starts_[static_cast<std::size_t>(phase)];
-}
-
-std::uint64_t Schedule::rounds_of(Phase phase) const {
-  return starts_[static_cast<std::size_t>(phase) + 1] - first_round(phase);
-}
-
 Phase Schedule::phase_of(std::uint64_t round) const {
   CORRIDOR_CHECK(round < rounds(), "round {} of {}", round, rounds());
   // No phase is without rounds.
   return static_cast<Phase>(std::ranges::upper_bound(starts_, round) - starts_.begin() - 1);
 }
 
-std::int64_t Schedule::steps_per_round() const { return steps_per_round_; }
+bool Schedule::ends_phase(std::uint64_t round) const {
+  return std::ranges::binary_search(starts_, round + 1);
+}
 
-std::int64_t Schedule::phase_steps_before(std::uint64_t round) const {
-  return static_cast<std::int64_t>(round - first_round(phase_of(round))) * steps_per_round_;
+std::int64_t Schedule::phase_steps_after(std::uint64_t round) const {
+  return static_cast<std::int64_t>(round - first_round(phase_of(round)) + 1) * steps_per_round_;
 }
 
 double Schedule::phase_progress(std::uint64_t round) const {
@@ -57,9 +49,8 @@ std::uint64_t Schedule::weights_version(std::uint64_t round) const {
 }
 
 bool Schedule::selects_in(std::uint64_t round) const {
-  const Phase phase = phase_of(round);
-  const std::uint64_t done = round - first_round(phase) + 1;
-  return done % selection_every_ == 0 || done == rounds_of(phase);
+  const std::uint64_t done = round - first_round(phase_of(round)) + 1;
+  return done % selection_every_ == 0 || ends_phase(round);
 }
 
 bool Schedule::checkpoints_after(std::uint64_t round) const {

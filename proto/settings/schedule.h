@@ -18,14 +18,18 @@ class Schedule {
  public:
   explicit Schedule(const RunConfig& config);
 
-  std::uint64_t rounds() const;  // of all phases
-  std::uint64_t first_round(Phase phase) const;
-  std::uint64_t rounds_of(Phase phase) const;  // the budget divided, rounded up
+  std::uint64_t rounds() const { return starts_.back(); }  // of all phases
+  std::uint64_t first_round(Phase phase) const { return starts_[static_cast<std::size_t>(phase)]; }
+  // The budget divided, rounded up.
+  std::uint64_t rounds_of(Phase phase) const {
+    return starts_[static_cast<std::size_t>(phase) + 1] - first_round(phase);
+  }
   Phase phase_of(std::uint64_t round) const;   // round < rounds()
+  bool ends_phase(std::uint64_t round) const;  // whether it is its phase's last
 
-  // Environment steps of all actors in one round, and in the phase before `round`.
-  std::int64_t steps_per_round() const;
-  std::int64_t phase_steps_before(std::uint64_t round) const;
+  // Environment steps of all actors in one round, and in the phase up to the end of `round`.
+  std::int64_t steps_per_round() const { return steps_per_round_; }
+  std::int64_t phase_steps_after(std::uint64_t round) const;
   // Share of the phase's rounds that lie before `round`, in [0, 1).
   double phase_progress(std::uint64_t round) const;
 

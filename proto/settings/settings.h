@@ -176,7 +176,14 @@ struct RunConfig {
   RunSettings run;
 
   const DqnSettings& phase(Phase which) const { return dqn[static_cast<std::size_t>(which)]; }
-  PlannerShape shape(NetworkId which) const { return named_network(which).shape(*this); }
+  PlannerShape shape(NetworkId which) const {
+    const int speed_changes = static_cast<int>(planner.speed_changes_mps.size());
+    const std::array shapes = {
+        mop_shape(planner.corridors_per_lane, speed_changes, planner.clearance_steps),
+        bp_shape(road.lanes)};
+    static_assert(shapes.size() == kNetworks.size(), "one for each");
+    return shapes[static_cast<std::size_t>(which)];
+  }
   NetworkShape network(NetworkId which) const { return phase(which).network(shape(which)); }
   // Of the reward and, where there is one, of the risk, one after the other.
   std::size_t parameters(NetworkId which) const {

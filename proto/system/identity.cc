@@ -5,12 +5,11 @@
 
 #include <array>
 #include <cerrno>
-#include <charconv>
 #include <cstdlib>
 #include <cstring>
-#include <string_view>
 
 #include "proto/base/failure.h"
+#include "proto/base/text.h"
 
 namespace corridor {
 namespace {
@@ -39,12 +38,9 @@ std::string start_environment(std::uint32_t starts) {
 }
 
 std::uint64_t draw_incarnation() {
-  std::uint32_t starts = 0;
-  if (const char* const text = std::getenv(kStarts)) {
-    const std::string_view number = text;
-    std::from_chars(number.data(), number.data() + number.size(), starts);
-  }
-  return incarnation_of(starts, random_64_bits());
+  const char* const text = std::getenv(kStarts);
+  const auto starts = text ? parse_number<std::uint32_t>(text) : std::nullopt;
+  return incarnation_of(starts.value_or(0), random_64_bits());
 }
 
 }  // namespace corridor

@@ -4,13 +4,11 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <charconv>
 #include <cstdlib>
 #include <cstring>
-#include <string_view>
-#include <utility>
 
 #include "proto/base/failure.h"
+#include "proto/base/text.h"
 
 namespace corridor {
 namespace {
@@ -32,35 +30,23 @@ Beats* map(int descriptor) {
 }  // namespace
 
 Pulse::Pulse() : descriptor_(memfd_create("corridor-pulse", MFD_CLOEXEC)) {
-  if (descriptor_ >= 0 && ftruncate(descriptor_, sizeof(Beats)) == 0) beats_ = map(descriptor_);
-  if (beats_ == nullptr) {
-    const int error = errno;
-    if (descriptor_ >= 0) close(descriptor_);
-    throw Failure("cannot share memory with another process: {}", std::strerror(error));
+  if (descriptor_.valid() && ftruncate(descriptor_.get(), sizeof(Beats)) == 0) {
+    beats_.reset(map(descriptor_.get()));
   }
+  if (!beats_) throw Failure("cannot share memory with another process: {}", std::strerror(errno));
 }
 
-Pulse::Pulse(Pulse&& other) noexcept
-    : descriptor_(std::exchange(other.descriptor_, -1)),
-      beats_(std::exchange(other.beats_, nullptr)) {}
+void Pulse::Unmap::operator()(Beats* beats) const { munmap(beats, sizeof(Beats)); }
 
-Pulse::~Pulse() {
-  if (beats_ != nullptr) munmap(beats_, sizeof(Beats));
-  if (descriptor_ >= 0) close(descriptor_);
-}
-
-std::string Pulse::environment() const { return fmt::format("{}={}", kVariable, descriptor_); }
+std::string Pulse::environment() const { return fmt::format("{}={}", kVariable, descriptor()); }
 
 std::uint64_t Pulse::beats() const { return beats_->load(std::memory_order_relaxed); }
 
 void adopt_pulse() {
   const char* const text = std::getenv(kVariable);
   if (text == nullptr) return;
-  const std::string_view number = text;
-  int descriptor = -1;
-  std::from_chars(number.data(), number.data() + number.size(), descriptor);
-  if (Beats* const beats = map(descriptor)) beats_of_this_process = beats;
-  close(descriptor);
+  const Descriptor descriptor(parse_number<int>(text).value_or(-1));
+  if (Beats* const beats = map(descriptor.get())) beats_of_this_process = beats;
   unsetenv(kVariable);
 }
 

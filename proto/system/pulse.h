@@ -4,7 +4,10 @@
 
 #include <atomic>
 #include <cstdint>
+#include <memory>
 #include <string>
+
+#include "proto/system/descriptor.h"
 
 namespace corridor {
 
@@ -14,20 +17,19 @@ class Pulse {
  public:
   // Throws Failure when the system has no memory for it.
   Pulse();
-  ~Pulse();
-  Pulse(Pulse&& other) noexcept;
-  Pulse(const Pulse&) = delete;
-  Pulse& operator=(const Pulse&) = delete;
 
   // To be inherited by the process, whose environment says where: "CORRIDOR_PULSE=<descriptor>".
-  int descriptor() const { return descriptor_; }
+  int descriptor() const { return descriptor_.get(); }
   std::string environment() const;
 
   std::uint64_t beats() const;
 
  private:
-  int descriptor_ = -1;
-  std::atomic<std::uint64_t>* beats_ = nullptr;
+  struct Unmap {
+    void operator()(std::atomic<std::uint64_t>* beats) const;
+  };
+  Descriptor descriptor_;
+  std::unique_ptr<std::atomic<std::uint64_t>, Unmap> beats_;
 };
 
 // The process's side. Takes what its environment says; without it, beats go nowhere.

@@ -72,105 +72,106 @@ std::size_t bytes_in(const std::vector<Ts>&... lists) {
   return (std::size_t{0} + ... + (lists.size() * sizeof(Ts)));
 }
 
-void fill_open(wire::OpenEpisode::Builder to, const OpenEpisode& open) {
+// Of a message whose texts and data are more than the frame has room for.
+std::size_t payload_bytes(const Insert& insert) {
+  return bytes_in(insert.rows, insert.priorities, insert.open.actions);
+}
+std::size_t payload_bytes(const Step& step) { return bytes_in(step.keys, step.priorities); }
+std::size_t payload_bytes(const Save& save) { return save.directory.size() + save.previous.size(); }
+std::size_t payload_bytes(const Joined& joined) { return bytes_in(joined.open.actions); }
+std::size_t payload_bytes(const Weights& weights) {
+  std::size_t bytes = 0;
+  for (const std::vector<float>& parameters : weights.networks.by_id) bytes += bytes_in(parameters);
+  return bytes;
+}
+template <typename Message>
+std::size_t payload_bytes(const Message&) {
+  return 0;
+}
+
+void fill(wire::OpenEpisode::Builder to, const OpenEpisode& open) {
   to.setEpisode(open.episode);
   to.setActions(data_of(open.actions, kActionsBytesMax));
 }
 
-Bytes encode_request(const Join&) {
-  return build<wire::ReplayRequest>(0, [](auto root) { root.setJoin(); });
+void fill(wire::ReplayRequest::Builder root, const Join&) { root.setJoin(); }
+
+void fill(wire::ReplayRequest::Builder root, const Insert& insert) {
+  auto to = root.initInsert();
+  to.setRound(insert.round);
+  to.setObservations(insert.observations);
+  to.setRows(data_of(insert.rows));
+  to.setPriorities(data_of(insert.priorities));
+  fill(to.initOpen(), insert.open);
 }
 
-Bytes encode_request(const Insert& insert) {
-  const std::size_t bytes = bytes_in(insert.rows, insert.priorities, insert.open.actions);
-  return build<wire::ReplayRequest>(bytes, [&](auto root) {
-    auto to = root.initInsert();
-    to.setRound(insert.round);
-    to.setObservations(insert.observations);
-    to.setRows(data_of(insert.rows));
-    to.setPriorities(data_of(insert.priorities));
-    fill_open(to.initOpen(), insert.open);
-  });
+void fill(wire::ReplayRequest::Builder root, const OpenBlock& block) {
+  root.initOpenBlock().setRound(block.round);
 }
 
-Bytes encode_request(const OpenBlock& block) {
-  return build<wire::ReplayRequest>(0,
-                                    [&](auto root) { root.initOpenBlock().setRound(block.round); });
+void fill(wire::ReplayRequest::Builder root, const Step& step) {
+  auto to = root.initStep();
+  to.setKeys(data_of(step.keys));
+  to.setPriorities(data_of(step.priorities));
+  to.setCount(step.count);
+  to.setImportanceExponent(step.importance_exponent);
 }
 
-Bytes encode_request(const Step& step) {
-  return build<wire::ReplayRequest>(bytes_in(step.keys, step.priorities), [&](auto root) {
-    auto to = root.initStep();
-    to.setKeys(data_of(step.keys));
-    to.setPriorities(data_of(step.priorities));
-    to.setCount(step.count);
-    to.setImportanceExponent(step.importance_exponent);
-  });
+void fill(wire::ReplayRequest::Builder root, const Save& save) {
+  auto to = root.initSave();
+  to.setDirectory(text_of(save.directory, kDirectoryBytesMax));
+  to.setPrevious(text_of(save.previous, kDirectoryBytesMax));
 }
 
-Bytes encode_request(const Save& save) {
-  return build<wire::ReplayRequest>(save.directory.size() + save.previous.size(), [&](auto root) {
-    auto to = root.initSave();
-    to.setDirectory(text_of(save.directory, kDirectoryBytesMax));
-    to.setPrevious(text_of(save.previous, kDirectoryBytesMax));
-  });
+void fill(wire::ReplayReply::Builder root, const Joined& joined) {
+  auto to = root.initJoined();
+  to.setNextRound(joined.next_round);
+  fill(to.initOpen(), joined.open);
 }
 
-Bytes encode_reply(const Joined& joined) {
-  return build<wire::ReplayReply>(bytes_in(joined.open.actions), [&](auto root) {
-    auto to = root.initJoined();
-    to.setNextRound(joined.next_round);
-    fill_open(to.initOpen(), joined.open);
-  });
+void fill(wire::ReplayReply::Builder root, const Inserted&) { root.setInserted(); }
+
+void fill(wire::ReplayReply::Builder root, const Opened& opened) {
+  root.initOpened().setBatches(opened.batches);
 }
 
-Bytes encode_reply(const Inserted&) {
-  return build<wire::ReplayReply>(0, [](auto root) { root.setInserted(); });
+void fill(wire::ReplayReply::Builder root, const Saved& saved) {
+  root.initSaved().setComplete(saved.complete);
 }
 
-Bytes encode_reply(const Opened& opened) {
-  return build<wire::ReplayReply>(0,
-                                  [&](auto root) { root.initOpened().setBatches(opened.batches); });
+void fill(wire::LearnerRequest::Builder root, const WeightsWanted& wanted) {
+  root.initWeights().setVersion(wanted.version);
 }
 
-Bytes encode_reply(const Saved& saved) {
-  return build<wire::ReplayReply>(0,
-                                  [&](auto root) { root.initSaved().setComplete(saved.complete); });
+void fill(wire::LearnerRequest::Builder root, const SelectionOutcome& outcome) {
+  auto to = root.initSelection();
+  to.setRound(outcome.round);
+  to.setEpisodes(outcome.episodes);
+  to.setSteps(outcome.steps);
+  to.setReward(outcome.reward);
+  to.setCollisions(outcome.collisions);
 }
 
-Bytes encode_request(const WeightsWanted& wanted) {
-  return build<wire::LearnerRequest>(
-      0, [&](auto root) { root.initWeights().setVersion(wanted.version); });
-}
-
-Bytes encode_request(const SelectionOutcome& outcome) {
-  return build<wire::LearnerRequest>(0, [&](auto root) {
-    auto to = root.initSelection();
-    to.setRound(outcome.round);
-    to.setEpisodes(outcome.episodes);
-    to.setSteps(outcome.steps);
-    to.setReward(outcome.reward);
-    to.setCollisions(outcome.collisions);
-  });
-}
-
-Bytes encode_reply(const Weights& weights) {
+void fill(wire::LearnerReply::Builder root, const Weights& weights) {
   static_assert(kNetworks.size() <= kNetworksMax);
-  std::size_t bytes = 0;
-  for (const NamedNetwork& network : kNetworks) bytes += bytes_in(weights.networks[network.id]);
-  return build<wire::LearnerReply>(bytes, [&](auto root) {
-    auto to = root.initWeights();
-    to.setVersion(weights.version);
-    auto networks = to.initNetworks(static_cast<unsigned>(kNetworks.size()));
-    for (unsigned i = 0; i < kNetworks.size(); ++i) {
-      networks[i].setName(text_of(kNetworks[i].name, kNetworkNameBytesMax));
-      networks[i].setParameters(data_of(weights.networks[kNetworks[i].id]));
-    }
-  });
+  auto to = root.initWeights();
+  to.setVersion(weights.version);
+  auto networks = to.initNetworks(static_cast<unsigned>(kNetworks.size()));
+  for (unsigned i = 0; i < kNetworks.size(); ++i) {
+    networks[i].setName(text_of(kNetworks[i].name, kNetworkNameBytesMax));
+    networks[i].setParameters(data_of(weights.networks[kNetworks[i].id]));
+  }
 }
 
-Bytes encode_reply(const Noted&) {
-  return build<wire::LearnerReply>(0, [](auto root) { root.setNoted(); });
+void fill(wire::LearnerReply::Builder root, const Noted&) { root.setNoted(); }
+
+template <typename Root, typename... Kinds>
+Bytes encode_kind(const std::variant<Kinds...>& message) {
+  return std::visit(
+      [](const auto& kind) {
+        return build<Root>(payload_bytes(kind), [&](auto root) { fill(root, kind); });
+      },
+      message);
 }
 
 // ---- Decoding: bytes from anywhere. `require` is to Malformed what CORRIDOR_CHECK is to bugs.
@@ -180,26 +181,18 @@ void require(bool condition, fmt::format_string<Args...> reason, Args&&... args)
   if (!condition) throw Malformed(fmt::format(reason, std::forward<Args>(args)...));
 }
 
-// Whole words of a message, where Cap'n Proto can read them: aligned.
-class AlignedWords {
- public:
-  explicit AlignedWords(ByteView bytes) : data_(bytes.data()), size_(bytes.size() / sizeof(word)) {
-    if (reinterpret_cast<std::uintptr_t>(data_) % alignof(word) == 0) return;
-    copy_ = std::make_unique_for_overwrite<std::uint64_t[]>(size_);
-    std::memcpy(copy_.get(), data_, bytes.size());
-    data_ = copy_.get();
-  }
-  kj::ArrayPtr<const word> get() const { return {static_cast<const word*>(data_), size_}; }
-
- private:
-  const void* data_;
-  std::size_t size_;
-  std::unique_ptr<std::uint64_t[]> copy_;
-};
+// The same bytes where Cap'n Proto can read their words.
+Body aligned(Body body) {
+  const ByteView bytes = body;
+  const bool is = reinterpret_cast<std::uintptr_t>(bytes.data()) % alignof(word) == 0;
+  return is ? body : Body(Bytes(bytes.begin(), bytes.end()));
+}
 
 // Calls `read` with the message's root.
 template <typename Root, typename Read>
-auto decode(ByteView bytes, const Read& read) {
+auto decode(ByteView from, const Read& read) {
+  const Body owner = aligned(Body(nullptr, from));
+  const ByteView bytes = owner;
   require(bytes.size() > kTableBytes && bytes.size() % sizeof(word) == 0, "{} bytes are no message",
           bytes.size());
   SegmentTable table;
@@ -209,8 +202,7 @@ auto decode(ByteView bytes, const Read& read) {
           "a segment table of {} segments and {} words before {} bytes",
           std::uint64_t{table.segments_less_one} + 1, table.words, body.size());
 
-  const AlignedWords words(body);
-  const kj::ArrayPtr<const word> segment = words.get();
+  const kj::ArrayPtr<const word> segment(reinterpret_cast<const word*>(body.data()), table.words);
   capnp::ReaderOptions limits;
   limits.traversalLimitInWords = 4 * segment.size();
   limits.nestingLimit = 4;
@@ -319,28 +311,11 @@ Weights read_weights(wire::LearnerReply::Weights::Reader from) {
   throw Malformed(fmt::format("{} of unknown kind {}", name, kind));
 }
 
-Role role_of(wire::Header::Role role) {
-  switch (role) {
-    case wire::Header::Role::ACTOR:
-      return Role::kActor;
-    case wire::Header::Role::LEARNER:
-      return Role::kLearner;
-  }
-  unknown_kind("a role", static_cast<unsigned>(role));
-}
-
-MessageKind kind_of(wire::Header::Kind kind) {
-  switch (kind) {
-    case wire::Header::Kind::REQUEST:
-      return MessageKind::kRequest;
-    case wire::Header::Kind::REPLY:
-      return MessageKind::kReply;
-    case wire::Header::Kind::PENDING:
-      return MessageKind::kPending;
-    case wire::Header::Kind::REFUSED:
-      return MessageKind::kRefused;
-  }
-  unknown_kind("a header", static_cast<unsigned>(kind));
+// Of an enum whose values are those of `To`.
+template <typename To, typename From>
+To enum_of(From value, From last, const char* name) {
+  if (value > last) unknown_kind(name, static_cast<unsigned>(value));
+  return static_cast<To>(value);
 }
 
 }  // namespace
@@ -376,8 +351,8 @@ Bytes encode(const Header& header) {
   return build<wire::Header>(header.run_id.size() + header.refusal.size(), [&](auto to) {
     to.setProtocol(header.protocol);
     to.setRunId(text_of(header.run_id, kRunIdBytesMax));
-    to.setRole(static_cast<wire::Header::Role>(header.role));
-    to.setIndex(header.index);
+    to.setRole(static_cast<wire::Header::Role>(header.client.role));
+    to.setIndex(header.client.index);
     to.setIncarnation(header.incarnation);
     to.setSequence(header.sequence);
     to.setKind(static_cast<wire::Header::Kind>(header.kind));
@@ -385,29 +360,21 @@ Bytes encode(const Header& header) {
   });
 }
 
-Bytes encode(const ReplayRequest& request) {
-  return std::visit([](const auto& kind) { return encode_request(kind); }, request);
-}
-
-Bytes encode(const ReplayReply& reply) {
-  return std::visit([](const auto& kind) { return encode_reply(kind); }, reply);
-}
-
-Bytes encode(const LearnerRequest& request) {
-  return std::visit([](const auto& kind) { return encode_request(kind); }, request);
-}
-
-Bytes encode(const LearnerReply& reply) {
-  return std::visit([](const auto& kind) { return encode_reply(kind); }, reply);
-}
+Bytes encode(const ReplayRequest& request) { return encode_kind<wire::ReplayRequest>(request); }
+Bytes encode(const ReplayReply& reply) { return encode_kind<wire::ReplayReply>(reply); }
+Bytes encode(const LearnerRequest& request) { return encode_kind<wire::LearnerRequest>(request); }
+Bytes encode(const LearnerReply& reply) { return encode_kind<wire::LearnerReply>(reply); }
 
 Header decode_header(ByteView bytes) {
   return decode<wire::Header>(bytes, [](wire::Header::Reader from) {
     return Header{
-        from.getProtocol(),      string_of(from.getRunId(), "runId", kRunIdBytesMax),
-        role_of(from.getRole()), from.getIndex(),
-        from.getIncarnation(),   from.getSequence(),
-        kind_of(from.getKind()), string_of(from.getRefusal(), "refusal", kRefusalBytesMax)};
+        from.getProtocol(),
+        string_of(from.getRunId(), "runId", kRunIdBytesMax),
+        {enum_of<Role>(from.getRole(), wire::Header::Role::LEARNER, "a role"), from.getIndex()},
+        from.getIncarnation(),
+        from.getSequence(),
+        enum_of<MessageKind>(from.getKind(), wire::Header::Kind::REFUSED, "a header"),
+        string_of(from.getRefusal(), "refusal", kRefusalBytesMax)};
   });
 }
 
@@ -481,13 +448,9 @@ LearnerReply decode_learner_reply(ByteView bytes) {
 }
 
 std::optional<ReceivedBatch> decode_batch(Body body) {
-  ByteView bytes = body;
-  if (reinterpret_cast<std::uintptr_t>(bytes.data()) % alignof(word) != 0) {
-    body = Body(Bytes(bytes.begin(), bytes.end()));
-    bytes = body;
-  }
+  body = aligned(std::move(body));
   return decode<wire::ReplayReply>(
-      bytes, [&](wire::ReplayReply::Reader from) -> std::optional<ReceivedBatch> {
+      body, [&](wire::ReplayReply::Reader from) -> std::optional<ReceivedBatch> {
         if (!from.isBatch()) return std::nullopt;
         ReceivedBatch batch = read_batch(from.getBatch());
         batch.body = body;

@@ -136,8 +136,7 @@ struct Client::Impl {
         limits(bounds),
         clock(std::move(time)),
         header{.run_id = std::move(identity.run_id),
-               .role = identity.role,
-               .index = identity.index,
+               .client = {identity.role, identity.index},
                .incarnation = identity.incarnation,
                .refusal = {}} {
     CORRIDOR_CHECK(limits.window >= 1 && limits.resend_after > Duration::zero());
@@ -275,7 +274,7 @@ std::size_t Client::unanswered() const { return impl_->requests.size(); }
 namespace {
 
 struct Answer {
-  MessageKind kind = MessageKind::kReply;
+  MessageKind kind = MessageKind::kPending;  // none yet
   std::string refusal;
   zmq::message_t body;
 };
@@ -283,9 +282,15 @@ struct Answer {
 // One client, as far as the server remembers it.
 struct Peer {
   std::uint64_t incarnation = 0;
-  std::string route;       // ZeroMQ's name of the connection that it last spoke by
-  std::uint64_t last = 0;  // sequence number handed out
-  std::deque<std::optional<Answer>> answers;  // to the last requests up to `last`; or none yet
+  std::string route;           // ZeroMQ's name of the connection that it last spoke by
+  std::uint64_t last = 0;      // sequence number handed out
+  std::deque<Answer> answers;  // to the last requests up to `last`
+
+  // To the request of this number; nothing when it is remembered no more.
+  Answer* answer_to(std::uint64_t sequence) {
+    const std::uint64_t age = last - sequence;
+    return age < answers.size() ? &answers[answers.size() - 1 - age] : nullptr;
+  }
 };
 
 // ZeroMQ binds to numbers and interfaces only; people write names.
@@ -347,11 +352,15 @@ struct Server::Impl {
     peer->route = route;
     if (header->sequence > peer->last + 1) return std::nullopt;  // its predecessor comes again
     if (header->sequence <= peer->last) {
-      answer_repeated(*header, *peer);
+      if (Answer* const answer = peer->answer_to(header->sequence)) {
+        send_answer(*header, *peer, *answer);
+      } else {
+        ++dropped;
+      }
       return std::nullopt;
     }
     if (peer->answers.size() == limits.window) {
-      if (!peer->answers.front()) {
+      if (peer->answers.front().kind == MessageKind::kPending) {
         refuse_stranger(*header, route,
                         fmt::format("more than {} unanswered requests", limits.window));
         return std::nullopt;
@@ -360,10 +369,7 @@ struct Server::Impl {
     }
     peer->answers.emplace_back();
     peer->last = header->sequence;
-    return IncomingRequest{{header->role, header->index},
-                           header->incarnation,
-                           header->sequence,
-                           body_of(std::move(frames[2]))};
+    return IncomingRequest{*header, body_of(std::move(frames[2]))};
   }
 
   std::optional<Header> decode_request(const Frames& frames) const {
@@ -388,8 +394,7 @@ struct Server::Impl {
                                 kProtocolVersion, header.protocol));
     }
     if (header.run_id != run_id) return refuse("it serves another run");
-    const ClientId id{header.role, header.index};
-    const auto known = peers.find(id);
+    const auto known = peers.find(header.client);
     if (known != peers.end() && header.incarnation == known->second.incarnation) {
       return &known->second;
     }
@@ -400,24 +405,9 @@ struct Server::Impl {
     if (known == peers.end() && peers.size() >= limits.clients) {
       return refuse(fmt::format("it has {} clients already", limits.clients));
     }
-    Peer& peer = peers[id];
+    Peer& peer = peers[header.client];
     peer = Peer{.incarnation = header.incarnation, .route = route, .last = 0, .answers = {}};
     return &peer;
-  }
-
-  void answer_repeated(Header header, Peer& peer) {
-    const std::uint64_t age = peer.last - header.sequence;
-    if (age >= peer.answers.size()) {
-      ++dropped;
-      return;
-    }
-    std::optional<Answer>& answer = peer.answers[peer.answers.size() - 1 - age];
-    if (answer) {
-      send_answer(header, peer, *answer);
-    } else {
-      header.kind = MessageKind::kPending;
-      send_message(socket, peer.route, header, nothing);
-    }
   }
 
   void send_answer(Header header, const Peer& peer, Answer& answer) {
@@ -438,18 +428,12 @@ struct Server::Impl {
     const auto found = peers.find(request.client);
     if (found == peers.end() || found->second.incarnation != request.incarnation) return;
     Peer& peer = found->second;
-    const std::uint64_t age = peer.last - request.sequence;
-    CORRIDOR_CHECK(age < peer.answers.size(), "request {} of {}", request.sequence, peer.last);
-    std::optional<Answer>& slot = peer.answers[peer.answers.size() - 1 - age];
-    CORRIDOR_CHECK(!slot, "request {} answered twice", request.sequence);
-    slot = std::move(answer);
-    const Header header{.run_id = run_id,
-                        .role = request.client.role,
-                        .index = request.client.index,
-                        .incarnation = request.incarnation,
-                        .sequence = request.sequence,
-                        .refusal = {}};
-    send_answer(header, peer, *slot);
+    Answer* const slot = peer.answer_to(request.sequence);
+    CORRIDOR_CHECK(slot, "request {} of {}", request.sequence, peer.last);
+    CORRIDOR_CHECK(slot->kind == MessageKind::kPending, "request {} answered twice",
+                   request.sequence);
+    *slot = std::move(answer);
+    send_answer(request, peer, *slot);
   }
 
   std::string run_id;

@@ -71,17 +71,7 @@ class Client {
   std::unique_ptr<Impl> impl_;
 };
 
-// A client as its server sees it. Ordered, so that it can be a map's key.
-struct ClientId {
-  Role role = Role::kActor;
-  std::uint32_t index = 0;
-  auto operator<=>(const ClientId&) const = default;
-};
-
-struct IncomingRequest {
-  ClientId client;
-  std::uint64_t incarnation = 0;
-  std::uint64_t sequence = 0;
+struct IncomingRequest : Header {
   Body body;
 };
 

@@ -17,11 +17,17 @@ inline constexpr std::uint32_t kProtocolVersion = 6;
 enum class Role : std::uint16_t { kActor, kLearner };
 enum class MessageKind : std::uint16_t { kRequest, kReply, kPending, kRefused };
 
+// A client as its server sees it. Ordered, so that it can be a map's key.
+struct ClientId {
+  Role role = Role::kActor;
+  std::uint32_t index = 0;
+  auto operator<=>(const ClientId&) const = default;
+};
+
 struct Header {
   std::uint32_t protocol = kProtocolVersion;
   std::string run_id;
-  Role role = Role::kActor;
-  std::uint32_t index = 0;
+  ClientId client;
   std::uint64_t incarnation = 0;
   std::uint64_t sequence = 0;
   MessageKind kind = MessageKind::kRequest;

@@ -70,7 +70,7 @@ TEST_F(TraceEpisode, OfANewDriveIsThatOfTheEvaluationsEpisode) {
   FakeWorld world(config_);
   const EpisodeTrace driven =
       trace_drive(config_, {}, planner_pair("left+rules"), test_episode_seed(5, 0), 40, world);
-  EXPECT_EQ(to_json(driven), to_json(recorded));
+  EXPECT_EQ(json_of(driven), json_of(recorded));
 }
 
 TEST_F(TraceEpisode, HasTheValuesThatLearnedPlannersChoseBy) {

@@ -11,6 +11,7 @@
 #include "proto/config/run_config.h"
 #include "proto/run/actor_task.h"
 #include "proto/run/evaluation_record.h"
+#include "proto/run/json_record.h"
 #include "proto/run/metrics.h"
 #include "proto/run/tensor_file.h"
 #include "proto/wire/codec.h"
@@ -109,7 +110,8 @@ void read_records(std::string_view text) {
   parse_metrics_line(text);
   parse_step_count(text);
   const auto json = Json::parse(text, nullptr, /*allow_exceptions=*/false);
-  if (!json.is_discarded()) read_or_fail([&] { parse_evaluation(json, "fuzz"); });
+  if (!json.is_discarded())
+    read_or_fail([&] { parse_record<EvaluationRecord>(json, "fuzz", "evaluation"); });
 }
 
 constexpr Target kTargets[] = {{"message", read_message},

@@ -31,10 +31,10 @@ TEST(ParseNumber, TakesTheWholeTextOrNothing) {
 }
 
 TEST(Listed, PutsCommasBetween) {
-  EXPECT_EQ(listed({}), "");
-  EXPECT_EQ(listed({"a"}), "a");
-  EXPECT_EQ(listed({"a", "b", "c"}), "a, b, c");
-  EXPECT_EQ(listed({"", "b"}, "-"), "-b");
+  EXPECT_EQ(listed(std::vector<int>{}), "");
+  EXPECT_EQ(listed(std::vector{"a"}), "a");
+  EXPECT_EQ(listed(std::vector{"a", "b", "c"}), "a, b, c");
+  EXPECT_EQ(listed(std::vector{"", "b"}, "-"), "-b");
 }
 
 TEST(Replaced, IsTheTextWithAnotherInPlaceOfEachCharacter) {

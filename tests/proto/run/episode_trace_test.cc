@@ -26,11 +26,15 @@ EpisodeTrace trace() {
   return trace;
 }
 
+EpisodeTrace parse_trace(const Json& json, const std::string& name) {
+  return parse_record<EpisodeTrace>(json, name, "episode's trace");
+}
+
 TEST(EpisodeTrace, IsTheSameAfterWritingAndReading) {
   EpisodeTrace whole = trace();
-  const Json object = to_json(whole);
-  EXPECT_EQ(to_json(parse_episode_trace(object, "file")), object);
-  const EpisodeTrace read = parse_episode_trace(object, "file");
+  const Json object = json_of(whole);
+  EXPECT_EQ(json_of(parse_trace(object, "file")), object);
+  const EpisodeTrace read = parse_trace(object, "file");
   EXPECT_EQ(read.commands, whole.commands);
   EXPECT_EQ(read.steps[0].command, 1);
   EXPECT_EQ(read.steps[0].others[0].s_m, 120.0);
@@ -38,13 +42,13 @@ TEST(EpisodeTrace, IsTheSameAfterWritingAndReading) {
   EXPECT_EQ(read.collision->other, 8);
 
   whole.collision.reset();
-  EXPECT_FALSE(parse_episode_trace(to_json(whole), "file").collision);
+  EXPECT_FALSE(parse_trace(json_of(whole), "file").collision);
 }
 
 TEST(EpisodeTrace, OfAnythingElseIsRefusedByTheFilesName) {
-  const Json good = to_json(trace());
+  const Json good = json_of(trace());
   const auto refused = [](const Json& object) {
-    EXPECT_THAT([&] { parse_episode_trace(object, "some.json"); },
+    EXPECT_THAT([&] { parse_trace(object, "some.json"); },
                 ThrowsMessage<Failure>(HasSubstr("some.json is no episode's trace")))
         << object;
   };

@@ -23,7 +23,9 @@ EvaluationRecord evaluation(const std::string& planner = "rules", std::uint64_t 
   return evaluation_of({planner, seed}, 0.5, {whole, collided});
 }
 
-const auto read = [](const Json& json) { parse_evaluation(json, "rules_7.json"); };
+const auto read = [](const Json& json) {
+  parse_record<EvaluationRecord>(json, "rules_7.json", "evaluation");
+};
 
 TEST(EvaluationRecord, SumsUpItsEpisodes) {
   const EvaluationRecord record = evaluation();

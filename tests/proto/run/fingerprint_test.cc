@@ -48,11 +48,11 @@ TEST(Fingerprint, ChangesWithEveryPartOfTheContent) {
   EXPECT_NE(fingerprint(replay(), learner()), original);
 }
 
-TEST(NewestCheckpoint, IsNothingInANewRunAndTheLastCommittedOneLater) {
+TEST(Fingerprint, OfACheckpointIsThatOfItsRowsHoweverTheyAreDivided) {
   const testing_support::TemporaryDirectory temporary;
   const RunDirectory directory = RunDirectory::create(temporary.path() / "run");
   const Checkpoints checkpoints(directory.checkpoints());
-  EXPECT_FALSE(newest_checkpoint(directory));
+  EXPECT_EQ(rounds_done(directory), 0u);
   // The rows with the keys 4, 5 and 6, divided in this way or that; key 3 has given way.
   std::vector<std::string> fingerprints;
   for (const std::uint64_t cut : {5, 6}) {
@@ -69,10 +69,8 @@ TEST(NewestCheckpoint, IsNothingInANewRunAndTheLastCommittedOneLater) {
       write_tensors(partial / file.name(), part);
     }
     checkpoints.commit(cut, 2);
-    const auto checkpoint = newest_checkpoint(directory);
-    ASSERT_TRUE(checkpoint);
-    EXPECT_EQ(checkpoint->rounds_done, cut + 1);
-    fingerprints.push_back(fingerprint(*checkpoint));
+    EXPECT_EQ(rounds_done(directory), cut + 1);
+    fingerprints.push_back(fingerprint(checkpoints.newest().value()));
   }
   EXPECT_EQ(fingerprints[0], fingerprints[1]);
   TensorFile whole = replay();
@@ -80,9 +78,9 @@ TEST(NewestCheckpoint, IsNothingInANewRunAndTheLastCommittedOneLater) {
                         Tensor{{3, 2}, std::vector<float>{4.0F, 0.5F, 5.0F, 0.5F, 6.0F, 0.5F}});
   EXPECT_EQ(fingerprints[0], fingerprint(learner(), whole));
 
-  const auto checkpoint = newest_checkpoint(directory);
-  std::filesystem::resize_file(checkpoint->directory / kReplayFile, 20);
-  EXPECT_THROW(fingerprint(*checkpoint), Failure);
+  const auto checkpoint = checkpoints.newest().value();
+  std::filesystem::resize_file(checkpoint / kReplayFile, 20);
+  EXPECT_THROW(fingerprint(checkpoint), Failure);
 }
 
 }  // namespace

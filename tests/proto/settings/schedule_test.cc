@@ -56,10 +56,10 @@ TEST(Schedule, TheBpsRoundsFollowTheMops) {
 
 TEST(Schedule, StepsAndProgressCountWithinThePhase) {
   const Schedule schedule(small());
-  EXPECT_EQ(schedule.phase_steps_before(0), 0);
-  EXPECT_EQ(schedule.phase_steps_before(4), 800);
-  EXPECT_EQ(schedule.phase_steps_before(5), 0);
-  EXPECT_EQ(schedule.phase_steps_before(7), 400);
+  EXPECT_EQ(schedule.phase_steps_after(0), 200);
+  EXPECT_EQ(schedule.phase_steps_after(4), 1000);
+  EXPECT_EQ(schedule.phase_steps_after(5), 200);
+  EXPECT_EQ(schedule.phase_steps_after(7), 600);
   EXPECT_EQ(schedule.phase_progress(0), 0.0);
   EXPECT_EQ(schedule.phase_progress(4), 0.8);
   EXPECT_EQ(schedule.phase_progress(5), 0.0);

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "proto/base/random.h"
+#include "proto/settings/transition.h"
 #include "tests/support/batches.h"
 
 namespace corridor {

@@ -487,7 +487,7 @@ TEST(Endpoint, TooManyClientsAreRefused) {
   RawClient raw(address);
   raw.request(1, "");
   Header other = RawClient::header(1);
-  other.index = 1;
+  other.client.index = 1;
   raw.send_frames({encode(other), {}});
   EXPECT_TRUE(server.receive(kSoon));
   while (server.dropped() == 0) EXPECT_FALSE(server.receive(kBrief));
