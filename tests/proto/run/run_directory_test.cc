@@ -3,9 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "proto/settings/settings.h"
 #include "proto/system/files.h"
-#include "proto/wire/connect.h"
 #include "tests/support/failure_of.h"
 #include "tests/support/temporary_directory.h"
 
@@ -62,26 +60,6 @@ TEST_F(Runs, AreOpenedWithoutAChangeAndGetTheFoldersTheyLackWhenAsked) {
   EXPECT_FALSE(fs::exists(logs));
   opened.create_folders();
   EXPECT_TRUE(fs::is_directory(logs));
-}
-
-TEST(Addresses, OfTcpAreTheConfiguredPorts) {
-  RunSettings settings;
-  settings.transport = Transport::kTcp;
-  settings.host = "node";
-  const Addresses where = addresses(settings, std::string(32, 'a'));
-  EXPECT_EQ(where.replay, "tcp://node:5701");
-  EXPECT_EQ(where.learner, "tcp://node:5702");
-}
-
-TEST(Addresses, OfIpcDifferByRunAndDoNotShowItsId) {
-  const std::string one(32, 'a'), two(32, 'b');
-  const Addresses where = addresses({}, one);
-  EXPECT_THAT(where.replay, testing::StartsWith("ipc://@corridor-"));
-  EXPECT_NE(where.replay, where.learner);
-  EXPECT_NE(where.replay, addresses({}, two).replay);
-  EXPECT_EQ(where.replay, addresses({}, one).replay);
-  EXPECT_EQ(where.replay.find(one.substr(0, 8)), std::string::npos);
-  EXPECT_LT(where.replay.size(), 100U);  // a Unix socket's name has 107
 }
 
 }  // namespace
