@@ -13,12 +13,16 @@
 #include "cluster/train.h"
 #include "proto/base/failure.h"
 #include "proto/run/fingerprint.h"
+#include "proto/settings/limits.h"
 #include "proto/settings/planner_pairs.h"
 #include "proto/system/command_line.h"
 #include "proto/system/program.h"
 
 namespace corridor::cluster {
 namespace {
+
+// Of things that a command goes through one by one.
+constexpr std::uint64_t kCountMax = 1'000'000;
 
 // What the command line says; each command reads its part.
 struct Arguments {
@@ -50,7 +54,7 @@ void declare_train(CLI::App& app, Arguments& arguments) {
   app.add_option("--actors", options.actors, "actor processes (run.actors)")->take_last();
   app.add_option("--seed", options.seed, "seed of everything random (run.seed)")
       ->take_last()
-      ->check(CLI::NonNegativeNumber);
+      ->check(whole_number(0, kSeedMax));
   declare_settings(app, options.settings);
 }
 
@@ -80,13 +84,15 @@ void declare_drive(CLI::App& app, Arguments& arguments) {
   declare_world(app, arguments, options.world);
   app.add_option("--planner", options.planner, "who drives, as in evaluate")->capture_default_str();
   app.add_option("--seed", options.seed, "of the traffic (the first of evaluation.seeds)")
-      ->check(CLI::NonNegativeNumber);
-  app.add_option("--number", options.number, "which episode of that seed")->capture_default_str();
+      ->check(whole_number(0, kSeedMax));
+  app.add_option("--number", options.number, "which episode of that seed")
+      ->capture_default_str()
+      ->check(whole_number(0, kCountMax));
   app.add_option("--episode", options.episode, "a recorded one: a file, or a name as in redrive");
   app.add_flag("--collisions", options.collisions, "the planner's collisions in its evaluations");
   app.add_option("--most", options.most, "of them, at most")
       ->capture_default_str()
-      ->check(CLI::PositiveNumber);
+      ->check(whole_number(1, kCountMax));
   app.add_option("--from", options.from_s, "seconds after the episode's start")
       ->capture_default_str();
   app.add_option("--seconds", options.seconds, "to show")->capture_default_str();
@@ -104,12 +110,14 @@ void declare_evaluate(CLI::App& app, Arguments& arguments) {
     planners += fmt::format("\n{}{} ({})", pair.name, pair.by_default ? "*" : "", pair.meaning);
   }
   app.add_option("--planners", options.planners, planners)->delimiter(',')->allow_extra_args(false);
-  app.add_option("--steps", options.steps, "steps for each planner and seed (evaluation.steps)");
+  app.add_option("--steps", options.steps, "steps for each planner and seed (evaluation.steps)")
+      ->check(whole_number(1, kStepsMax));
   app.add_option("--seeds", options.seeds, "evaluation seeds (evaluation.seeds)")
       ->delimiter(',')
-      ->check(CLI::NonNegativeNumber)
+      ->check(whole_number(0, kSeedMax))
       ->allow_extra_args(false);
-  app.add_option("--jobs", options.jobs, "processes at a time (the number of cores)");
+  app.add_option("--jobs", options.jobs, "processes at a time (the number of cores)")
+      ->check(whole_number(1, kCountMax));
   app.add_option("--json", options.json, "write the figures of each planner and seed to this file");
   app.add_option("--fcd", options.fcd,
                  "have SUMO write the trajectories of every episode into this directory");
@@ -124,16 +132,17 @@ void declare_hindsight(CLI::App& app, Arguments& arguments) {
       ->allow_extra_args(false);
   app.add_option("--seeds", options.seeds, "evaluation seeds (evaluation.seeds)")
       ->delimiter(',')
-      ->check(CLI::NonNegativeNumber)
+      ->check(whole_number(0, kSeedMax))
       ->allow_extra_args(false);
   app.add_option("--actions", options.limits.actions, "search the last so many actions")
       ->capture_default_str()
-      ->check(CLI::Range(1, HindsightLimits::kActionsMax));
+      ->check(whole_number(1, HindsightLimits::kActionsMax));
   app.add_option("--attempts", options.limits.attempts_max,
                  "give up a search after so many attempts")
       ->capture_default_str()
-      ->check(CLI::PositiveNumber);
-  app.add_option("--jobs", options.jobs, "processes at a time (the number of cores)");
+      ->check(whole_number(1, kCountMax));
+  app.add_option("--jobs", options.jobs, "processes at a time (the number of cores)")
+      ->check(whole_number(1, kCountMax));
 }
 
 int run_fingerprint(const Arguments& arguments) {
@@ -183,7 +192,8 @@ const Command kCommands[] = {
      [](CLI::App& app, Arguments& a) {
        app.add_option("FILE", a.experiment.file, "experiment file (TOML)")->required();
        app.add_option("--run", a.experiment.directory, "directory of the experiment")->required();
-       app.add_option("--jobs", a.experiment.jobs, "cores to use (all)");
+       app.add_option("--jobs", a.experiment.jobs, "cores to use (all)")
+           ->check(whole_number(1, kCountMax));
      },
      [](const Arguments& a) { return experiment(a.experiment, a.program); }},
     {"report", "Write a page with training curves, tables and settings, and the figures",

@@ -8,9 +8,9 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 
 #include "proto/config/driving_keys.h"
+#include "proto/settings/limits.h"
 #include "proto/settings/settings.h"
 
 namespace corridor::config_keys {
@@ -26,10 +26,6 @@ struct RetiredKey {
 inline constexpr RetiredKey kRetiredKeys[] = {
     {"run", "delay_ms_max", "0.0", "tests set CORRIDOR_TEST_DELAY_MS"},
 };
-
-inline constexpr std::int64_t kStepsMax = 10'000'000'000;
-// TOML's largest integer less one: the largest is what the TOML library makes of still larger ones.
-inline constexpr std::uint64_t kSeedMax = std::numeric_limits<std::int64_t>::max() - 1;
 
 template <typename Visitor>
 void describe(SimulationSettings& simulation, Visitor& v) {
@@ -200,8 +196,8 @@ void describe(RunConfig& config, Visitor& v) {
   describe(config.bp_reward, v);
   describe(config.rules, v);
   describe(config.random_bp, v);
-  describe(config.dqn[0], "mop", "The motion planner's deep Q-network and its training.", v);
-  describe(config.dqn[1], "bp", "The behaviour planner's, on the trained motion planner.", v);
+  for (const NamedNetwork& network : kNetworks)
+    describe(config.dqn[static_cast<std::size_t>(network.id)], network.name, network.meaning, v);
   describe(config.schedule, v);
   describe(config.evaluation, v);
   describe(config.run, v);

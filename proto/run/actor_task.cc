@@ -1,5 +1,7 @@
 #include "proto/run/actor_task.h"
 
+#include <concepts>
+#include <limits>
 #include <tuple>
 #include <type_traits>
 
@@ -28,7 +30,11 @@ void declare(CLI::App& app, std::filesystem::path& run, Task& task) {
   command->add_option("RUN", run, "run directory")->required();
   Task::options(task, [&](const char* name, auto& value, const char* meaning) {
     CLI::Option* option = command->add_option(name, value, meaning);
-    if (!IsOptional<std::decay_t<decltype(value)>>()) option->required();
+    using Value = std::decay_t<decltype(value)>;
+    if (!IsOptional<Value>()) option->required();
+    if constexpr (std::integral<Value>) {
+      option->check(whole_number(0, static_cast<std::uint64_t>(std::numeric_limits<Value>::max())));
+    }
   });
 }
 

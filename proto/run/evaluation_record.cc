@@ -1,10 +1,12 @@
 #include "proto/run/evaluation_record.h"
 
 #include <algorithm>
+#include <tuple>
 
 #include "proto/base/failure.h"
 #include "proto/base/text.h"
 #include "proto/run/json_record.h"
+#include "proto/settings/limits.h"
 #include "proto/settings/planner_pairs.h"
 #include "proto/system/files.h"
 
@@ -15,6 +17,11 @@ void EpisodeRecord::check() const {
   if (collisions != (collision_kind ? 1 : 0)) {
     throw Failure("{} collisions, {} of a kind", collisions, collision_kind ? 1 : 0);
   }
+  std::vector<std::int64_t> counts = lane_steps;
+  counts.insert(counts.end(), {steps, lane_changes, hard_brakes, bypasses});
+  for (const std::int64_t count : counts) {
+    if (count < 0 || count > kStepsMax) throw Failure("a count of {}", count);
+  }
 }
 
 void EvaluationRecord::check() const {
@@ -22,6 +29,12 @@ void EvaluationRecord::check() const {
   if (steps <= 0) throw Failure("no steps");
   if (!(step_s > 0.0)) throw Failure("steps of {} s", step_s);
   if (per_episode.empty()) throw Failure("it has no episodes");
+  const EvaluationRecord sums = evaluation_of(name(), step_s, per_episode);
+  const auto counts = [](const EvaluationRecord& of) {
+    return std::tuple(of.steps, of.episodes, of.collisions, of.lane_changes, of.bypasses,
+                      of.collisions_by_kind);
+  };
+  if (counts(*this) != counts(sums)) throw Failure("its totals are not those of its episodes");
 }
 
 EvaluationRecord evaluation_of(const EvaluationName& name, double step_s,

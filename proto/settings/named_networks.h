@@ -1,5 +1,5 @@
 // The networks of a run, by name, in the order in which they are trained. A further one needs an id
-// and a row here, its shape (RunConfig::shape), and what its phase trains it on (actor/rollout.h).
+// and a row here, its shape (RunConfig::shape), and what its phase trains it on (actor/rollout.cc).
 #pragma once
 
 #include <array>
@@ -17,11 +17,14 @@ struct NamedNetwork {
   NetworkId id;            // its place in the table
   const char* name;        // of its tensors and of its table in a scenario
   const char* phase_name;  // in metrics, and to people
+  const char* meaning;     // of its table, for people
 };
 
 inline constexpr std::array kNetworks = {
-    NamedNetwork{NetworkId::kMop, "mop", "MoP"},
-    NamedNetwork{NetworkId::kBp, "bp", "BP"},
+    NamedNetwork{NetworkId::kMop, "mop", "MoP",
+                 "The motion planner's deep Q-network and its training."},
+    NamedNetwork{NetworkId::kBp, "bp", "BP",
+                 "The behaviour planner's, on the trained motion planner."},
 };
 
 inline constexpr const NamedNetwork& named_network(NetworkId id) {

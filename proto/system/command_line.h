@@ -2,13 +2,27 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <cstdint>
 #include <optional>
 #include <string>
 
 #include "proto/base/failure.h"
+#include "proto/base/text.h"
 #include "proto/system/program.h"
 
 namespace corridor {
+
+// A check of options: their texts are whole numbers in this range. By itself CLI11 takes -1 for the
+// largest one.
+inline CLI::Validator whole_number(std::uint64_t low, std::uint64_t high) {
+  return CLI::Validator(
+      [=](const std::string& text) {
+        const auto number = parse_number<std::uint64_t>(text);
+        const bool good = number && *number >= low && *number <= high;
+        return good ? "" : fmt::format("'{}' is no whole number from {} to {}", text, low, high);
+      },
+      "");
+}
 
 // Parses, --version included. Returns the exit status where that is all there is to do (--help,
 // --version), else nothing. Throws Failure in one line for what is wrong; `program` is how people

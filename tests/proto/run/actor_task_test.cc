@@ -46,7 +46,12 @@ TEST(ActorTask, IsOneAndComplete) {
   EXPECT_THAT(failure_of([] { parsed({"fly", "run"}); }), HasSubstr("subcommand is required"));
   EXPECT_THAT(failure_of([] { parsed({"train", "run"}); }), HasSubstr("--index"));
   EXPECT_THAT(failure_of([] { parsed({"train", "--index", "0"}); }), HasSubstr("RUN"));
-  EXPECT_THAT(failure_of([] { parsed({"train", "run", "--index", "one"}); }), HasSubstr("--index"));
+  for (const char* index : {"one", "-1", "2147483648"}) {
+    EXPECT_THAT(failure_of([&] {
+                  parsed({"train", "run", "--index", index});
+                }),
+                HasSubstr("is no whole number from 0 to 2147483647"));
+  }
   EXPECT_THAT(failure_of([] {
                 parsed({"train", "run", "--index", "0", "--seed", "1"});
               }),

@@ -84,6 +84,12 @@ TEST(EvaluationRecord, IsRefusedWhenAMemberIsMissingOrWrong) {
   expect_refused(json, "/collisions_by_kind/side_by_ego", 0.5, "side_by_ego", read);
   expect_refused(json, "/planner", "flying", "flying", read);
   expect_refused(json, "/steps", 0, "no steps", read);
+  for (const char* total : {"/steps", "/episodes", "/collisions", "/lane_changes", "/bypasses",
+                            "/collisions_by_kind/side_by_ego"}) {
+    expect_refused(json, total, 77, "its totals are not those of its episodes", read);
+  }
+  expect_refused(json, "/per_episode/0/bypasses", -1, "a count of -1", read);
+  expect_refused(json, "/per_episode/0/lane_steps/0", 1LL << 62, "a count of", read);
   expect_refused(json, "/step_s", 0.0, "steps of 0 s", read);
   expect_refused(json, "/per_episode", Json::array(), "no episodes", read);
   expect_refused(json, "/per_episode/0/steps", 0, "no steps", read);
