@@ -33,7 +33,7 @@ void evaluate(const RunConfig& config, const Networks& networks, const EvaluateT
   const PlannerPair& pair = planner_pair(task.planner);
   const auto bp = make_behaviour_planner(pair, config, networks);
   const auto mop = make_motion_planner(pair, config, networks);
-  if (task.fcd) std::filesystem::create_directories(*task.fcd);
+  if (task.fcd) create_folders(*task.fcd);
 
   Episode episode(config, world);
   std::vector<EpisodeRecord> per_episode;

@@ -94,7 +94,7 @@ int drive(const DriveOptions& options) {
   for (Clip& clip : clips) clip.speed_changes_mps = place.config.planner.speed_changes_mps;
 
   const fs::path out = options.out.empty() ? place.directory.root() / "drives" : options.out;
-  on_disk("create", out, [&] { fs::create_directories(out); });
+  create_folders(out);
   const fs::path film = out / (name + ".mp4"), sheet = out / (name + ".png"),
                  player = out / (name + ".html");
   write_file(sheet, contact_sheet(clips, options.interval_s).png());

@@ -17,6 +17,7 @@
 #include "proto/settings/planner_pairs.h"
 #include "proto/system/clock.h"
 #include "proto/system/files.h"
+#include "proto/system/subprocess.h"
 
 namespace corridor::cluster {
 namespace {
@@ -117,9 +118,7 @@ void redrive(const std::filesystem::path& run, const std::string& episode) {
   const RunDirectory directory = RunDirectory::open(run);
   ProcessPlan actor =
       actor_process("redrive", RedriveTask{find_episode(directory, episode)}, directory);
-  std::vector<char*> argv;
-  for (std::string& text : actor.argv) argv.push_back(text.data());
-  argv.push_back(nullptr);
+  const std::vector<char*> argv = pointers_to(actor.argv);
   execv(argv[0], argv.data());
   throw Failure("cannot start {}: {}; is the build complete?", argv[0], std::strerror(errno));
 }

@@ -1,7 +1,6 @@
 #include "cluster/evaluation_world.h"
 
 #include <algorithm>
-#include <optional>
 
 #include "proto/base/failure.h"
 #include "proto/config/config_values.h"
@@ -102,15 +101,14 @@ void check_can_drive(const std::string& planner, const EvaluationPlace& place) {
   }
   if (!pair.learned()) return;
   if (std::filesystem::exists(place.trained.networks())) return;
-  const auto checkpoint = Checkpoints(place.trained.checkpoints()).newest();
-  if (!checkpoint) {
+  const std::uint64_t done = rounds_done(place.trained);
+  if (done == 0) {
     throw Failure(
         "planner '{}' drives with learned weights, and {} has no checkpoint yet: wait, "
         "or choose --planners rules,sumo",
         planner, place.trained.root().string());
   }
   const std::uint64_t bp_begins = Schedule(place.config).first_round(Phase::kBp);
-  const std::uint64_t done = checkpoint_round(*checkpoint) + 1;
   if (pair.bp == BpKind::kLearned && done <= bp_begins) {
     throw Failure(
         "planner '{}' drives with the learned BP, and {} has trained the MoP only, for "

@@ -57,10 +57,8 @@ bool has_begun(const TrainingRun& run) { return fs::exists(run.root / "manifest.
 
 // The directory of this experiment, new or of an earlier start.
 void claim(const fs::path& directory, const fs::path& file) {
-  on_disk("create", directory, [&] {
-    fs::create_directories(directory / "runs");
-    fs::create_directories(directory / "log");
-  });
+  constexpr const char* kFolders[] = {"runs", "log"};
+  create_folders(directory, kFolders);
   const fs::path copy = directory / "experiment.toml";
   if (!fs::exists(copy)) {
     write_file(copy, read_file(file));

@@ -14,15 +14,14 @@ namespace corridor::cluster {
 void export_run(const std::filesystem::path& run, const std::filesystem::path& to) {
   const RunDirectory trained = RunDirectory::open(run);
   const RunConfig config = load_run_config(trained.config());
-  const auto checkpoint = Checkpoints(trained.checkpoints()).newest();
-  if (!checkpoint || checkpoint_round(*checkpoint) + 1 < Schedule(config).rounds()) {
+  if (rounds_done(trained) < Schedule(config).rounds()) {
     throw Failure("the training of {} is not complete: go on with corridor resume {}", run.string(),
                   run.string());
   }
   const auto networks = newest_networks(trained, config);
   CORRIDOR_CHECK(networks.has_value(), "{}", run.string());
   RunManifest manifest = read_manifest(trained);
-  manifest.fingerprint = fingerprint(*checkpoint);
+  manifest.fingerprint = fingerprint(Checkpoints(trained.checkpoints()).newest().value());
 
   const RunDirectory exported = RunDirectory::create(to);
   FolderInTheMaking made(to);

@@ -16,6 +16,7 @@
 #include "proto/base/failure.h"
 #include "proto/system/descriptor.h"
 #include "proto/system/identity.h"
+#include "proto/system/subprocess.h"
 
 namespace corridor::cluster {
 namespace {
@@ -32,13 +33,6 @@ std::vector<std::string> environment_of(const Pulse& pulse, std::uint32_t starts
       result.emplace_back(text);
     }
   }
-  return result;
-}
-
-std::vector<char*> pointers(std::vector<std::string>& texts) {
-  std::vector<char*> result;
-  for (std::string& text : texts) result.push_back(text.data());
-  result.push_back(nullptr);
   return result;
 }
 
@@ -85,8 +79,8 @@ void Children::start(const ProcessPlan& plan, std::chrono::milliseconds patience
   Pulse pulse;
   std::vector<std::string> arguments = plan.argv;
   std::vector<std::string> environment = environment_of(pulse, ++starts_);
-  const std::vector<char*> argv = pointers(arguments);
-  const std::vector<char*> envp = pointers(environment);
+  const std::vector<char*> argv = pointers_to(arguments);
+  const std::vector<char*> envp = pointers_to(environment);
 
   const Descriptor log(open(plan.log.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644));
   if (!log.valid()) throw Failure("cannot write {}: {}", plan.log.string(), std::strerror(errno));

@@ -38,9 +38,9 @@ int report(const ReportOptions& options) {
 
   const std::filesystem::path out =
       options.out.empty() ? options.runs.front() / "report" : options.out;
-  on_disk("create", out, [&] { std::filesystem::create_directories(out); });
-  for (const auto& figures : {training, episodes}) {
-    for (const DrawnFigure& drawn : figures) {
+  create_folders(out);
+  for (const auto* figures : {&training, &episodes}) {
+    for (const DrawnFigure& drawn : *figures) {
       write_file(out / (drawn.name + ".svg"), drawn.svg);
       write_file(out / (drawn.name + ".png"), drawn.png);
     }

@@ -17,7 +17,7 @@ namespace {
 
 std::vector<std::pair<std::string, std::string>> made_with(const RunManifest& manifest) {
   std::vector<std::pair<std::string, std::string>> result;
-  const OrderedJson values = to_json(manifest).flatten();
+  const OrderedJson values = json_of<OrderedJson>(manifest).flatten();
   for (const auto& [path, value] : values.items()) {
     const std::string name = path.substr(path.rfind('/') + 1);
     // The settings are shown as a whole, and the id is what lets one into a run.

@@ -43,7 +43,7 @@ tensorboard::Event event_at(std::int64_t step, double wall_time_s) {
 }  // namespace
 
 EventWriter::EventWriter(const std::filesystem::path& folder, double wall_time_s) {
-  on_disk("create", folder, [&] { std::filesystem::create_directories(folder); });
+  create_folders(folder);
   file_ = next_file(folder);
   out_.open(file_, std::ios::binary);
   if (!out_) throw Failure("cannot write {}", file_.string());

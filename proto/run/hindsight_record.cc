@@ -25,8 +25,7 @@ void HindsightRecord::check() const {
 }
 
 void write_hindsight(const RunDirectory& directory, const HindsightRecord& record) {
-  on_disk("create", directory.hindsight(),
-          [&] { std::filesystem::create_directories(directory.hindsight()); });
+  create_folders(directory.hindsight());
   write_file(directory.hindsight({record.planner, record.seed}), json_of(record).dump(1) + "\n");
 }
 

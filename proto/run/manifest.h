@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "proto/base/json_fwd.h"
+#include "proto/run/json_record.h"
 #include "proto/run/run_directory.h"
 
 namespace corridor {
@@ -47,7 +47,7 @@ struct RunManifest {
   std::string scenario_name() const { return std::filesystem::path(scenario).stem(); }  // "paper"
 
   template <typename Self, typename Field>
-  static void fields(Self& self, Field field) {  // all but the fingerprint
+  static void fields(Self& self, Field field) {
     field("run_id", self.run_id);
     field("seed", self.seed);
     field("scenario", self.scenario);
@@ -57,12 +57,11 @@ struct RunManifest {
     field("cores", self.cores);
     field("versions", self.versions);
     field("config", self.config);
+    field("fingerprint", self.fingerprint, kLeftOut);
   }
   void check() const;
   bool operator==(const RunManifest&) const = default;
 };
-
-OrderedJson to_json(const RunManifest& manifest);
 
 // Throws Failure when the disk is full.
 void write_manifest(const RunDirectory& directory, const RunManifest& manifest);

@@ -69,9 +69,7 @@ class Child {
     posix_spawn_file_actions_adddup2(&files, errors_.write_end.get(), STDERR_FILENO);
     std::vector<std::string> words = arguments;
     words.insert(words.begin(), program.string());
-    std::vector<char*> argv;
-    for (std::string& word : words) argv.push_back(word.data());
-    argv.push_back(nullptr);
+    const std::vector<char*> argv = pointers_to(words);
     const int error = posix_spawn(&pid_, argv[0], &files, nullptr, argv.data(), environ);
     posix_spawn_file_actions_destroy(&files);
     if (error != 0) {
@@ -151,6 +149,13 @@ std::optional<fs::path> find_program(const std::string& name, std::vector<fs::pa
     if (access(program.c_str(), X_OK) == 0) return program;
   }
   return std::nullopt;
+}
+
+std::vector<char*> pointers_to(std::vector<std::string>& texts) {
+  std::vector<char*> result;
+  for (std::string& text : texts) result.push_back(text.data());
+  result.push_back(nullptr);
+  return result;
 }
 
 std::optional<SubprocessResult> run_subprocess(const fs::path& program,

@@ -13,6 +13,9 @@ namespace corridor {
 std::optional<std::filesystem::path> find_program(const std::string& name,
                                                   std::vector<std::filesystem::path> folders = {});
 
+// As exec wants them: a pointer to each, and the null behind them. `texts` outlive it.
+std::vector<char*> pointers_to(std::vector<std::string>& texts);
+
 struct SubprocessResult {
   int status = 0;      // as a shell says: 128 + signal when one ended it
   std::string output;  // standard output and standard error, each cut off at 64 MiB

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 namespace corridor::testing_support {
 
@@ -27,5 +28,14 @@ class TemporaryDirectory {
  private:
   std::filesystem::path path_;
 };
+
+// Of what lies in it.
+inline std::vector<std::string> names_in(const std::filesystem::path& directory) {
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(directory)) {
+    names.push_back(entry.path().filename().string());
+  }
+  return names;
+}
 
 }  // namespace corridor::testing_support

@@ -19,19 +19,12 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::UnorderedElementsAre;
+using testing_support::names_in;
 
 // Without write_file's cost; removed first, since some file systems flush what is overwritten.
 void damage(const fs::path& file, const std::string& content) {
   fs::remove(file);
   std::ofstream(file, std::ios::binary) << content;
-}
-
-std::vector<std::string> names_in(const fs::path& directory) {
-  std::vector<std::string> names;
-  for (const auto& entry : fs::directory_iterator(directory)) {
-    names.push_back(entry.path().filename().string());
-  }
-  return names;
 }
 
 class CheckpointsTest : public testing::Test {

@@ -45,7 +45,7 @@ TEST_F(Manifest, ThatIsMissingAMemberOrHasAnIdOfNoRunIsNamed) {
     write_file(run_.manifest(), json.dump());
     return failure_of([&] { read_manifest(run_); });
   };
-  const Json whole = to_json(manifest_);
+  const Json whole = json_of(manifest_);
   for (const auto& [name, value] : whole.items()) {
     Json without = whole;
     without.erase(name);
