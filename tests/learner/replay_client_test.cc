@@ -29,7 +29,7 @@ struct Connection {
 };
 
 // Keys count on from 0; a row's values are its key.
-Script batches() {
+ScriptedServer::Script batches() {
   return [key = std::uint64_t{0}](const ReplayRequest& request) mutable -> std::optional<Body> {
     Batch batch;
     batch.observations = 1;
