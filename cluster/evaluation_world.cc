@@ -21,7 +21,7 @@ RunConfig config_in(const RunConfig& trained, const EvaluationWorld& world,
   const RunConfig scenario = world.scenario.empty()
                                  ? with_overrides(trained, name, world.settings)
                                  : load_run_config(world.scenario, world.settings);
-  const RunConfig config = in_world(trained, scenario, name);
+  RunConfig config = in_world(trained, scenario, name);
   for (const ChangedKey& key : changed_keys(config, scenario)) {
     if (std::ranges::none_of(world.settings, [&](const std::string& setting) {
           return setting.starts_with(key.name + "=");
@@ -47,7 +47,7 @@ RunDirectory world_directory(const RunDirectory& run, const RunConfig& config,
   }
   // Somebody was stopped before it was complete.
   on_disk("remove", root, [&] { std::filesystem::remove_all(root); });
-  const RunDirectory directory = RunDirectory::create(root);
+  RunDirectory directory = RunDirectory::create(root);
   FolderInTheMaking made(root);
   scenarios::write_sumo_files(config, directory.network().parent_path());
   write_file(directory.config(), to_toml(config));

@@ -102,7 +102,7 @@ int supervise(const RunDirectory& directory, std::uint64_t rounds_before,
 // The settings to go on with, which config.toml then says.
 RunConfig changed_config(const ResumeOptions& options, const RunDirectory& directory) {
   const RunConfig at_start = config_at_start(directory);
-  const RunConfig config = load_run_config(directory.config(), options.settings);
+  RunConfig config = load_run_config(directory.config(), options.settings);
   const std::vector<ChangedKey> changed = changed_keys(at_start, config);
   for (const ChangedKey& key : changed) {
     if (!decides_result(key.heeds)) continue;

@@ -15,7 +15,7 @@ std::vector<std::vector<std::string>> lines_of(const Table& table) {
   for (const auto& row : table.rows) {
     lines.emplace_back();
     for (const auto& [text, interval] : row)
-      lines.back().push_back(interval.empty() ? text : text + " " + interval);
+      lines.back().push_back(interval.empty() ? text : fmt::format("{} {}", text, interval));
   }
   return lines;
 }

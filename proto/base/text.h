@@ -3,6 +3,7 @@
 
 #include <charconv>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -20,13 +21,13 @@ std::string grouped(std::int64_t number);
 // 67 -> "1 min 07 s"; 4000 -> "1 h 06 min". Rounded to whole seconds.
 std::string duration_text(double seconds);
 
-// "a, b, c".
-template <typename List>
-std::string listed(const List& values, std::string_view separator = ", ") {
+// "a, b, c". `shown`: what of each, as of std::ranges' projections.
+template <typename List, typename Shown = std::identity>
+std::string listed(const List& values, std::string_view separator = ", ", Shown shown = {}) {
   std::string list;
   std::string_view before;
   for (const auto& value : values) {
-    list += fmt::format("{}{}", before, value);
+    list += fmt::format("{}{}", before, std::invoke(shown, value));
     before = separator;
   }
   return list;

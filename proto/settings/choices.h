@@ -2,7 +2,6 @@
 #pragma once
 
 #include <array>
-#include <ranges>
 #include <string_view>
 
 #include "proto/base/failure.h"
@@ -82,7 +81,7 @@ E parse_choice(std::string_view name) {
       throw Failure("it is called \"{}\" now", choice.name);
     }
   }
-  throw Failure("must be one of {}", listed(std::views::transform(kChoices<E>, &Choice<E>::name)));
+  throw Failure("must be one of {}", listed(kChoices<E>, ", ", &Choice<E>::name));
 }
 
 }  // namespace corridor

@@ -4,7 +4,6 @@
 #pragma once
 
 #include <algorithm>
-#include <ranges>
 #include <string_view>
 
 #include "proto/base/failure.h"
@@ -67,7 +66,7 @@ inline const PlannerPair& planner_pair(std::string_view name) {
   const auto found = std::ranges::find(kPlannerPairs, name, &PlannerPair::name);
   if (found != std::end(kPlannerPairs)) return *found;
   throw Failure("there is no planner '{}'; choose among {}", name,
-                listed(std::views::transform(kPlannerPairs, &PlannerPair::name)));
+                listed(kPlannerPairs, ", ", &PlannerPair::name));
 }
 
 }  // namespace corridor

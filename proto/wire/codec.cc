@@ -182,7 +182,7 @@ void require(bool condition, fmt::format_string<Args...> reason, Args&&... args)
 }
 
 // The same bytes where Cap'n Proto can read their words.
-Body aligned(Body body) {
+Body aligned(const Body& body) {
   const ByteView bytes = body;
   const bool is = reinterpret_cast<std::uintptr_t>(bytes.data()) % alignof(word) == 0;
   return is ? body : Body(Bytes(bytes.begin(), bytes.end()));
@@ -448,7 +448,7 @@ LearnerReply decode_learner_reply(ByteView bytes) {
 }
 
 std::optional<ReceivedBatch> decode_batch(Body body) {
-  body = aligned(std::move(body));
+  body = aligned(body);
   return decode<wire::ReplayReply>(
       body, [&](wire::ReplayReply::Reader from) -> std::optional<ReceivedBatch> {
         if (!from.isBatch()) return std::nullopt;

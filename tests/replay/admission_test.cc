@@ -14,7 +14,7 @@ using Parking = Admission::Parking;
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-Insert chunk(std::uint64_t round, std::uint32_t actor) {
+Insert bare_chunk(std::uint64_t round, std::uint32_t actor) {
   Insert result;
   result.round = round;
   result.rows = {static_cast<float>(round), static_cast<float>(actor)};
@@ -28,11 +28,12 @@ TEST(AdmissionTest, EveryOrderOfArrivalIsAdmittedInTheOrderOfTheActors) {
     Admission admission(4);
     for (const std::uint32_t actor : order) {
       EXPECT_FALSE(admission.missing().empty());
-      ASSERT_EQ(admission.park(actor, chunk(0, actor)), Parking::kParked);
+      ASSERT_EQ(admission.park(actor, bare_chunk(0, actor)), Parking::kParked);
     }
     const std::vector<Insert> chunks = admission.admit();
     ASSERT_EQ(chunks.size(), 4U);
-    for (std::uint32_t actor = 0; actor < 4; ++actor) EXPECT_EQ(chunks[actor], chunk(0, actor));
+    for (std::uint32_t actor = 0; actor < 4; ++actor)
+      EXPECT_EQ(chunks[actor], bare_chunk(0, actor));
     EXPECT_EQ(admission.next_round(), 1U);
   } while (std::next_permutation(order.begin(), order.end()));
 }
@@ -40,11 +41,11 @@ TEST(AdmissionTest, EveryOrderOfArrivalIsAdmittedInTheOrderOfTheActors) {
 TEST(AdmissionTest, KnowsWhichActorsAreMissing) {
   Admission admission(3);
   EXPECT_THAT(admission.missing(), ElementsAre(0, 1, 2));
-  admission.park(1, chunk(0, 1));
-  admission.park(1, chunk(1, 1));
+  admission.park(1, bare_chunk(0, 1));
+  admission.park(1, bare_chunk(1, 1));
   EXPECT_THAT(admission.missing(), ElementsAre(0, 2));
-  admission.park(2, chunk(0, 2));
-  admission.park(0, chunk(0, 0));
+  admission.park(2, bare_chunk(0, 2));
+  admission.park(0, bare_chunk(0, 0));
   EXPECT_THAT(admission.missing(), IsEmpty());
   admission.admit();
   EXPECT_THAT(admission.missing(), ElementsAre(0, 2));
@@ -52,32 +53,32 @@ TEST(AdmissionTest, KnowsWhichActorsAreMissing) {
 
 TEST(AdmissionTest, ParksTwoRoundsAheadAndNoMore) {
   Admission admission(2);
-  EXPECT_EQ(admission.park(0, chunk(0, 0)), Parking::kParked);
-  EXPECT_EQ(admission.park(0, chunk(1, 0)), Parking::kParked);
-  EXPECT_EQ(admission.park(0, chunk(2, 0)), Parking::kTooEarly);
-  admission.park(1, chunk(0, 1));
+  EXPECT_EQ(admission.park(0, bare_chunk(0, 0)), Parking::kParked);
+  EXPECT_EQ(admission.park(0, bare_chunk(1, 0)), Parking::kParked);
+  EXPECT_EQ(admission.park(0, bare_chunk(2, 0)), Parking::kTooEarly);
+  admission.park(1, bare_chunk(0, 1));
   admission.admit();
-  EXPECT_EQ(admission.park(0, chunk(2, 0)), Parking::kParked);
+  EXPECT_EQ(admission.park(0, bare_chunk(2, 0)), Parking::kParked);
 }
 
 TEST(AdmissionTest, TakesEachRoundOnceAndNoneOutOfTurn) {
   Admission admission(1);
-  EXPECT_EQ(admission.park(0, chunk(1, 0)), Parking::kOutOfTurn);
-  EXPECT_EQ(admission.park(0, chunk(0, 0)), Parking::kParked);
-  EXPECT_EQ(admission.park(0, chunk(0, 0)), Parking::kOutOfTurn);
+  EXPECT_EQ(admission.park(0, bare_chunk(1, 0)), Parking::kOutOfTurn);
+  EXPECT_EQ(admission.park(0, bare_chunk(0, 0)), Parking::kParked);
+  EXPECT_EQ(admission.park(0, bare_chunk(0, 0)), Parking::kOutOfTurn);
   admission.admit();
-  EXPECT_EQ(admission.park(0, chunk(0, 0)), Parking::kOutOfTurn);
+  EXPECT_EQ(admission.park(0, bare_chunk(0, 0)), Parking::kOutOfTurn);
 }
 
 TEST(AdmissionTest, ACheckpointHoldsTheAdmittedEpisodesAndForgetsTheParkedOnes) {
   Admission admission(2);
-  admission.park(0, chunk(0, 0));
-  admission.park(1, chunk(0, 1));
+  admission.park(0, bare_chunk(0, 0));
+  admission.park(1, bare_chunk(0, 1));
   admission.admit();
   TensorFile file;
   admission.save(file);
-  admission.park(1, chunk(1, 1));
-  EXPECT_EQ(admission.open_episode(1), chunk(1, 1).open);
+  admission.park(1, bare_chunk(1, 1));
+  EXPECT_EQ(admission.open_episode(1), bare_chunk(1, 1).open);
   EXPECT_EQ(admission.next_round(1), 2U);
   TensorFile with_parked;
   admission.save(with_parked);
@@ -87,8 +88,8 @@ TEST(AdmissionTest, ACheckpointHoldsTheAdmittedEpisodesAndForgetsTheParkedOnes) 
   restored.load(file, "x");
   EXPECT_EQ(restored.next_round(), 1U);
   EXPECT_EQ(restored.next_round(1), 1U);
-  EXPECT_EQ(restored.open_episode(0), chunk(0, 0).open);
-  EXPECT_EQ(restored.open_episode(1), chunk(0, 1).open);
+  EXPECT_EQ(restored.open_episode(0), bare_chunk(0, 0).open);
+  EXPECT_EQ(restored.open_episode(1), bare_chunk(0, 1).open);
 }
 
 TEST(AdmissionTest, ADamagedCheckpointIsAFailure) {
