@@ -5,8 +5,7 @@
 //   training_seeds = [1, 2, 3, 4, 5]
 //   evaluation_seeds = [1002, 1003, 1004]
 //   evaluation_steps = 40_000               # for each arm, training seed and evaluation seed
-//
-//   [[training]]                            # one or more
+//   [[training]]                            # one or more; each after the one it begins with
 //   name = "paper"
 //   scenario = "../paper.toml"              # to train in; files are relative to this one
 //   settings = ["mop.risk_weight=0"]        # over the scenario; none unless given

@@ -1,6 +1,7 @@
 // The closed sets that a scenario chooses from: an enum each, and its choices' names and meanings.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <string_view>
 
@@ -66,10 +67,9 @@ inline constexpr auto kChoices<MopCommands> = std::to_array<Choice<MopCommands>>
 
 template <typename E>
 const char* name_of(E value) {
-  for (const Choice<E>& choice : kChoices<E>) {
-    if (choice.value == value) return choice.name;
-  }
-  CORRIDOR_CHECK(false, "no choice {}", static_cast<int>(value));
+  const auto found = std::ranges::find(kChoices<E>, value, &Choice<E>::value);
+  CORRIDOR_CHECK(found != kChoices<E>.end(), "no choice {}", static_cast<int>(value));
+  return found->name;
 }
 
 // Throws Failure that says what would be right, "must be one of cpu, cuda"; the caller says where.
