@@ -12,6 +12,7 @@
 
 #include "proto/base/format.h"
 #include "proto/base/random.h"
+#include "proto/run/run_directory.h"
 #include "tests/support/command.h"
 #include "tests/support/processes.h"
 
@@ -132,11 +133,11 @@ class Chaos {
     ++result_.disturbances[what];
     switch (what) {
       case Disturbance::kKillActor:
-        return signal_one("corridor-actor", SIGKILL);
+        return signal_one(kActorProgram, SIGKILL);
       case Disturbance::kKillReplay:
-        return signal_one("corridor-replay", SIGKILL);
+        return signal_one(kReplayProgram, SIGKILL);
       case Disturbance::kKillLearner:
-        return signal_one("corridor-learner", SIGKILL);
+        return signal_one(kLearnerProgram, SIGKILL);
       case Disturbance::kTerminateOne:
         return signal_one("corridor-", SIGTERM);
       case Disturbance::kStopOne:

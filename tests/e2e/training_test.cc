@@ -105,7 +105,7 @@ TEST(Training, GoesOnWithTheSameBitsWhereTheCalendarsClockRunsBackwards) {
                    {{"LD_PRELOAD", CORRIDOR_BACKWARD_CLOCK}, {kTestDelayVariable, "100"}});
   ASSERT_TRUE(training.wait_for("MoP", 60.0));
   for (const auto& [program, consequence] :
-       {std::pair{"corridor-actor", "; started again"}, {"corridor-learner", "; all go on from"}}) {
+       {std::pair{kActorProgram, "; started again"}, {kLearnerProgram, "; all go on from"}}) {
     for (const auto& process : processes_with(run)) {
       if (process.command_line.find(program) == std::string::npos) continue;
       kill(process.pid, SIGKILL);
