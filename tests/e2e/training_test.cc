@@ -1,5 +1,6 @@
 // The whole system on two cores: two actors in real SUMO traffic, the replay server, the learner.
 #include "proto/base/json.h"
+#include "proto/run/run_directory.h"
 #include "proto/system/test_delay.h"
 #include "tests/e2e/run_support.h"
 
