@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <iterator>
+#include <optional>
+#include <vector>
 
 #include "cluster/check.h"
 #include "cluster/drive.h"
@@ -23,6 +25,7 @@ namespace {
 
 // Of things that a command goes through one by one.
 constexpr std::uint64_t kCountMax = 1'000'000;
+constexpr const char* kProcesses = "processes at a time (the number of cores)";  // of --jobs
 
 // What the command line says; each command reads its part.
 struct Arguments {
@@ -44,6 +47,22 @@ struct Arguments {
 void declare_settings(CLI::App& app, std::vector<std::string>& settings) {
   app.add_option("--set", settings, "table.key=value: overrides the scenario; repeatable")
       ->allow_extra_args(false);
+}
+
+// Several, separated by commas.
+template <typename Value>
+CLI::Option* declare_list(CLI::App& app, const char* name, std::vector<Value>& values,
+                          const std::string& meaning) {
+  return app.add_option(name, values, meaning)->delimiter(',')->allow_extra_args(false);
+}
+
+void declare_seeds(CLI::App& app, std::vector<std::uint64_t>& seeds) {
+  declare_list(app, "--seeds", seeds, "evaluation seeds (evaluation.seeds)")
+      ->check(whole_number(0, kSeedMax));
+}
+
+void declare_jobs(CLI::App& app, std::optional<int>& jobs, const char* meaning) {
+  app.add_option("--jobs", jobs, meaning)->check(whole_number(1, kCountMax));
 }
 
 void declare_train(CLI::App& app, Arguments& arguments) {
@@ -109,15 +128,11 @@ void declare_evaluate(CLI::App& app, Arguments& arguments) {
   for (const PlannerPair& pair : kPlannerPairs) {
     planners += fmt::format("\n{}{} ({})", pair.name, pair.by_default ? "*" : "", pair.meaning);
   }
-  app.add_option("--planners", options.planners, planners)->delimiter(',')->allow_extra_args(false);
+  declare_list(app, "--planners", options.planners, planners);
   app.add_option("--steps", options.steps, "steps for each planner and seed (evaluation.steps)")
       ->check(whole_number(1, kStepsMax));
-  app.add_option("--seeds", options.seeds, "evaluation seeds (evaluation.seeds)")
-      ->delimiter(',')
-      ->check(whole_number(0, kSeedMax))
-      ->allow_extra_args(false);
-  app.add_option("--jobs", options.jobs, "processes at a time (the number of cores)")
-      ->check(whole_number(1, kCountMax));
+  declare_seeds(app, options.seeds);
+  declare_jobs(app, options.jobs, kProcesses);
   app.add_option("--json", options.json, "write the figures of each planner and seed to this file");
   app.add_option("--fcd", options.fcd,
                  "have SUMO write the trajectories of every episode into this directory");
@@ -126,14 +141,9 @@ void declare_evaluate(CLI::App& app, Arguments& arguments) {
 void declare_hindsight(CLI::App& app, Arguments& arguments) {
   HindsightOptions& options = arguments.hindsight;
   app.add_option("DIR", options.run, "run directory, or one of its scenarios/<name>")->required();
-  app.add_option("--planners", options.planners,
-                 "planner pairs, separated by commas; those of `corridor evaluate` unless given")
-      ->delimiter(',')
-      ->allow_extra_args(false);
-  app.add_option("--seeds", options.seeds, "evaluation seeds (evaluation.seeds)")
-      ->delimiter(',')
-      ->check(whole_number(0, kSeedMax))
-      ->allow_extra_args(false);
+  declare_list(app, "--planners", options.planners,
+               "planner pairs, separated by commas; those of `corridor evaluate` unless given");
+  declare_seeds(app, options.seeds);
   app.add_option("--actions", options.limits.actions, "search the last so many actions")
       ->capture_default_str()
       ->check(whole_number(1, HindsightLimits::kActionsMax));
@@ -141,8 +151,7 @@ void declare_hindsight(CLI::App& app, Arguments& arguments) {
                  "give up a search after so many attempts")
       ->capture_default_str()
       ->check(whole_number(1, kCountMax));
-  app.add_option("--jobs", options.jobs, "processes at a time (the number of cores)")
-      ->check(whole_number(1, kCountMax));
+  declare_jobs(app, options.jobs, kProcesses);
 }
 
 int run_fingerprint(const Arguments& arguments) {
@@ -192,8 +201,7 @@ const Command kCommands[] = {
      [](CLI::App& app, Arguments& a) {
        app.add_option("FILE", a.experiment.file, "experiment file (TOML)")->required();
        app.add_option("--run", a.experiment.directory, "directory of the experiment")->required();
-       app.add_option("--jobs", a.experiment.jobs, "cores to use (all)")
-           ->check(whole_number(1, kCountMax));
+       declare_jobs(app, a.experiment.jobs, "cores to use (all)");
      },
      [](const Arguments& a) { return experiment(a.experiment, a.program); }},
     {"report", "Write a page with training curves, tables and settings, and the figures",

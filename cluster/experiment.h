@@ -16,7 +16,7 @@ namespace corridor::cluster {
 struct ExperimentOptions {
   std::filesystem::path file = {};
   std::filesystem::path directory = {};
-  std::optional<int> jobs = {};  // cores to use = {}; else all
+  std::optional<int> jobs = {};  // cores to use; else all
 };
 
 // Trains and evaluates what is not there yet, as many at a time as there are cores: a training uses

@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "cluster/launch/local.h"
+#include "cluster/launch/plan.h"
 #include "cluster/watch/training_progress.h"
 #include "proto/base/failure.h"
 #include "proto/config/run_config.h"
-#include "proto/run/actor_task.h"
 #include "proto/run/metrics.h"
 #include "proto/run/run_directory.h"
 #include "proto/system/command_line.h"
@@ -145,9 +145,10 @@ int run(const std::string& scenario, int actors, const std::string& seed,
   print_memory(directory);
 
   // An actor that drives a single step, from exec to its end.
-  std::vector<std::string> one_step =
-      argv_of(EvaluateTask{.planner = "rules", .seed = 1, .steps = 1}, directory);
-  one_step.insert(one_step.begin(), fmt::format("{}/{}", kBin, kActorProgram));
+  const std::vector<std::string> one_step =
+      cluster::actor_process("one-step", EvaluateTask{.planner = "rules", .seed = 1, .steps = 1},
+                             directory)
+          .argv;
   for (int i = 0; i < 3; ++i) {
     const auto driven = testing_support::run_command(one_step, kDeadline_s);
     if (driven.status != 0) throw Failure("corridor-actor failed: {}", driven.output);
