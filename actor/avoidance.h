@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Hindsight: could a recorded collision have been avoided, by the last actions before it, or by any
 // reaction to what could be seen?
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One episode: the hierarchy's step (command -> window -> action -> trajectory -> world -> rewards)
 // in one place, for training, evaluation and driving again.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Is there a sequence of actions that does not end in a collision? Pure: what an action leads to is
 // the caller's to find out.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Greedy episodes on held-out traffic -> their records in the run directory.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // corridor-actor: one car in one SUMO. In a training it explores; by itself it evaluates, drives
 // episodes again and for pictures, or looks back on an evaluation's collisions.
 #include <cstdio>

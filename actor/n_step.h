@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Steps of an episode -> n-step transitions as rows (proto/settings/transition.h).
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The learned planners, and the planners that make up a pair.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Recorded episodes (proto/run/recorded_episode.h), driven again.
 #pragma once
 

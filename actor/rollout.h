@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // An actor's side of training: observe, decide, step, record.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // An actor process's work in a training run: round after round, weights in, transitions out.
 #pragma once
 

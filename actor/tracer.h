@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // An episode as it is driven, as a trace for pictures (proto/run/episode_trace.h).
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What would happen if: a function called in a copy of this process, so that whatever it does to
 // the world, a simulator in this process included, has not happened afterwards.
 #pragma once

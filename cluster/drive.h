@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `corridor drive`: an episode for people to look at.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where a run's planners are evaluated and shown: in their own world, or in another.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `corridor experiment`: every training and evaluation of an experiment file, and their tables.
 //
 //   DIR/experiment.toml              the file, as it was at the first start

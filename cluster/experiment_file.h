@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What an experiment is made of, a TOML file beside the scenarios, and what is trained and
 // evaluated for it, by which commands.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `corridor export`: a run's networks and settings, without its replay, metrics and logs: small
 // enough to keep with the sources, enough to evaluate and to train on from.
 #pragma once

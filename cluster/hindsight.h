@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `corridor hindsight`: how many collisions could any driver have avoided?
 #pragma once
 

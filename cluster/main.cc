@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The user's command: starts, watches and stops the other programs, which lie beside it.
 
 #include "cluster/commands.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Adam (Kingma and Ba 2015, algorithm 1, with PyTorch's constants and order of operations) after
 // clipping the gradient's norm, over flat vectors: one loop each. Pure.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which BLAS this process computes with: the learner itself on the CPU, and Debian's LibTorch. It
 // decides the speed (Debian's default is up to 20 times slower) and the bits of the result, so it
 // is recorded beside each run.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Takes the run's checkpoints (proto/run/checkpoints.h) beside the training: what has to wait for a
 // disk does so in threads, the learner's and the replay server's. One checkpoint at a time.
 #pragma once

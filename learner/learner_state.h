@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Everything that the learner's future depends on, as one value, and that value's file.
 #pragma once
 

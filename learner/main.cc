@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // corridor-learner RUN_DIRECTORY: trains a run's planners and publishes their weights.
 #include <string>
 

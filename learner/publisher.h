@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the learner serves to actors: weights by version, and a place to report greedy evaluations.
 // One thread; nothing happens outside its calls.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The learner's side of the replay server: opens blocks, draws a block's batches and returns their
 // priorities, asks for checkpoints. One thread.
 #pragma once

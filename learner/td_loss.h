@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The loss of a Q-network on a batch of n-step transitions, and its derivative: Double DQN
 // (van Hasselt et al. 2016) or DQN, Huber, importance weights. Pure.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The online and the target network of a training step, and what the step does to them. Two ways to
 // compute it: on the CPU by BLAS and our own loops, forward, backward and Adam, without LibTorch
 // (cpu_networks.cc); by LibTorch's autograd and Adam (torch_networks.cc), which trains on CUDA and

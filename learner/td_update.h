@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One gradient step of a planner's networks on a batch from replay: loss (td_loss.h), gradient-norm
 // clipping, Adam, target network; each for the reward's network, and for the risk's where there is
 // one. Both evaluate the same greedy policy, of Q - risk_weight * max(0, risk).

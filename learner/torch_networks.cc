@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <torch/torch.h>
 
 #include "learner/td_networks.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The learner's work: block after block, batches in, weights out; phase after phase.
 // docs/architecture.md, "Lockstep", says why the result does not depend on timing.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The order in which chunks enter the replay: (round, actor), whatever the order in which they
 // arrive. Chunks of later rounds are parked, at most kRoundsAhead an actor.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How many batches the learner may train on: so many that each row is drawn samples_per_insert
 // times on average. A pure function of the rows inserted: it waits for nothing, holds no counter
 // of its own, and cannot get out of step with the store over a restart.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // corridor-replay RUN_DIRECTORY: the prioritized replay server of a run.
 #include <string>
 

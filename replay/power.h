@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // x^y for many x in one loop that the compiler makes vector instructions of, which std::pow is not.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The replay server without its sockets: what each request does and what answers it
 // (proto/wire/wire.capnp). A function of the requests and, for each client, of their order: how the
 // actors' requests fall between the learner's changes no batch.

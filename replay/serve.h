@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The replay server's loop: a request from the socket, through the service, and its answer back.
 #pragma once
 

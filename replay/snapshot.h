@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The replay's part of a checkpoint (proto/run/checkpoints.h).
 #pragma once
 

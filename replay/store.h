@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Transitions of one phase and their priorities: a ring of rows with proportional prioritized
 // sampling (Schaul et al. 2016, section 3.3).
 //

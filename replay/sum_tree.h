@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Draws slots in proportion to their values: a 16-ary tree whose inner nodes hold the sums of their
 // children.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A scenario's files for SUMO: the road and the vehicle types. They are plain SUMO files that its
 // own tools open (`sumo-gui road.sumocfg`).
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Matrices and vectors. The only user of Eigen: what computes with matrices names them by these.
 #pragma once
 

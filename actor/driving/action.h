@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The MoP's actions, and action post-processing (paper section III-C): relative corridor and speed
 // into absolute ones.
 #pragma once

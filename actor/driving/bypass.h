@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Going around within a lane (paper figure "bypassing a vehicle that partially blocks the lane").
 #pragma once
 

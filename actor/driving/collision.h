@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Who hit whom. Rectangles along the road, the ego's turned by its yaw, tested at every step:
 // SUMO's own report misses some.
 #pragma once

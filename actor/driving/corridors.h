@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Lanes cut into N_c corridors each (paper section III-C), and the gaps along them.
 #pragma once
 

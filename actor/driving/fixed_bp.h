@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A behaviour planner that asks for one skill: the naive planners that tell whether a scenario's
 // traffic needs a BP at all.
 #pragma once

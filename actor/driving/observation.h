@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the two networks are fed. One index table each; sizes in proto/settings/transition.h.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The two planners' interfaces, and what they are given to decide on.
 #pragma once
 

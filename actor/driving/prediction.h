@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where the ego and the vehicles around it will be, and how near each other.
 #pragma once
 

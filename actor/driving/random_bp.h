@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The behaviour planner under which the MoP is trained (paper section III-D).
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The two rewards (paper sections III-B and III-C), unscaled.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The rule-based planners (paper section IV: "achieve similar goals as the reward"), the MoP's with
 // the same actions as the learned one.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the planners see of the road at one instant: the ego and the vehicles around it, in the
 // Frenet frame of the road. Plain values.
 //

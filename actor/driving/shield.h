@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The safety shield (Alshiekh et al. 2018, "Safe Reinforcement Learning via Shielding"): an action
 // after which the ego could no longer get out of the others' way gives way to the nearest one after
 // which it still can.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The skills that the behaviour planner can ask for (paper section III-B), in one table: where each
 // is to be had, and what the network that carries it out is shown: state pre-processing (section
 // III-C), so that earning the MoP's reward, which is in its window's middle, carries the skill out.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The smooth curve from where the ego is to the target corridor, extended along it as the ego moves
 // (paper section III-C, "Trajectory generator").
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a learned planner compares its actions by: Q-values of the reward, less the weighted risk.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Epsilon-greedy exploration, with an epsilon of its own for each actor (Horgan et al. 2018) and
 // random actions that may be held for a few steps.
 #pragma once

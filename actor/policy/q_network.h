@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The forward pass of a Q-network for one observation at a time, in Eigen: an actor needs no
 // LibTorch. tests/actor/policy holds it against the learner's.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "actor/vehicle/ode_vehicle.h"
 
 #include <ode/ode.h>

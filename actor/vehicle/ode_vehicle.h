@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The car that ODE simulates, with Webots' published figures: Webots' physics engine is a fork of
 // ODE, but this is not Webots. The only user of ODE.
 //

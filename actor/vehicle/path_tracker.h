@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Keeps a car on a path: linear-quadratic state feedback on the single-track model (Rajamani,
 // Vehicle Dynamics and Control, 2012, chapters 2 and 3), with the curvature ahead fed forward.
 // Pure.

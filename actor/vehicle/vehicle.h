@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A car with dynamics of its own, driven the way that Webots' public driver API drives one
 // (webots/vehicle/Driver.hpp: setSteeringAngle, setCruisingSpeed, setBrakeIntensity, step), so that
 // a Webots controller can be another implementation.

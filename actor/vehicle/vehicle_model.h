@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The cars and tyres that are simulated, as numbers with their sources.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A car of a running Webots (R2022a and later: x ahead, y left, z up), driven by its public
 // automobile API. It needs Webots' headers and libraries, and a process that Webots has for the
 // car's controller, with supervisor rights, on a level ground. Tests compile it against a fake of

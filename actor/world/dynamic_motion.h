@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The ego as a car with dynamics of its own: trajectory -> path and speed controller -> vehicle
 // (the lower part of paper figure 2).
 #pragma once

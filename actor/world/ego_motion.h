@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How the ego gets along its trajectories (settings: [dynamics]).
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The World that SUMO simulates. The only user of libsumo.
 //
 // The ego moves along its trajectories as [dynamics] says, or SUMO drives it; SUMO drives all

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The traffic around the ego, decided: who is there at the start, who leaves and who enters, and
 // who drives blindly. Pure: a function of the settings, the episode's seed and the scenes shown;
 // the world carries the decisions out.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A world in which one car is driven through traffic, one step at a time.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Processes that this one has started, each the leader of a process group of its own. Whatever is
 // still there when the object goes is killed; when this process dies, the kernel kills them.
 #pragma once

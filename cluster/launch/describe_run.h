@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What this machine puts into a run's manifest (proto/run/manifest.h).
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Processes on this machine: start, watch, stop. Nothing that is started here outlives its
 // starter: not after an error, a signal or a crash of either.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which processes a command starts: the run's configuration -> a list.
 #pragma once
 

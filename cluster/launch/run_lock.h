@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One launcher a run: `train` and `resume` hold the run's lock as long as any of its processes
 // lives.
 #pragma once

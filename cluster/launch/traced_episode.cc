@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "cluster/launch/traced_episode.h"
 
 #include "cluster/launch/plan.h"

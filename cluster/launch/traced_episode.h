@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Has corridor-actor drive an episode and say what happened at every step.
 #pragma once
 

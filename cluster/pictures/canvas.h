@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A drawing surface in pixels, x to the right and y down. What is drawn is kept as values, which
 // are written as PNG or SVG. The adapter of cairo.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Curves over time in a box of a canvas. Pure.
 #pragma once
 

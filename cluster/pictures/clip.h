@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A stretch of a driven episode, and where everything is at any time in it. Pure.
 #pragma once
 

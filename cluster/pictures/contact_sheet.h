@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Several instants of driving on one picture. Pure.
 #pragma once
 

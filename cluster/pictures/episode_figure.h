@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Driven episodes of one arm as a figure. Pure.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Figures of curves over environment steps, drawn by gnuplot, of which it is the adapter.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Clips of driven episodes as films. The only user of the program ffmpeg.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The colours of all pictures, each once, as 0xRRGGBB: canvas, gnuplot and the player take them
 // from here. Pure.
 #pragma once

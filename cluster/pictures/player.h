@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Clips of driven episodes as one HTML page that plays them: needs no network. Pure.
 #pragma once
 

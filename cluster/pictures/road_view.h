@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The road from above around the ego: lanes, vehicles with their speeds in km/h and, where a
 // planner decided, the corridors that the MoP was shown, as far as they are free, and its
 // trajectory. Pure.

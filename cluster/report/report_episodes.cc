@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "cluster/report/report_episodes.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The episodes that a report shows: chosen among those of an evaluation, and driven again.
 #pragma once
 

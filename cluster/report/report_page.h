@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Runs and their figures -> the page of a report. Pure.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Runs -> the figures of a report. Pure.
 #pragma once
 

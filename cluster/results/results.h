@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Results of evaluations, over training and evaluation seeds -> one row of estimates for each
 // planner pair ("arm"). Pure.
 //

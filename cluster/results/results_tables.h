@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What evaluations came to -> tables. Pure.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // 95 % confidence intervals for tables of results. Pure.
 #pragma once
 

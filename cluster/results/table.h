@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A table as text for terminals, as Markdown and as HTML. Pure.
 #pragma once
 

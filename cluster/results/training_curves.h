@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The metrics of trainings -> curves over environment steps: what the paper's training figures
 // show. Pure.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What other processes append to a text file, line by line, as it comes.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Progress of many processes that drive steps, each known by a file that grows: one bar for all.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The adapter of TensorBoard: event files that it reads while they grow. A file is a sequence of
 // TFRecords: the payload's length (8 bytes, little-endian), the masked CRC-32C of these 8 bytes
 // (4), the payload, its masked CRC-32C (4). A payload is a message Event (tensorboard_event.proto).

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What people see of a training while it goes on: its processes' metrics files, read as they grow,
 // as progress on standard output and as events for TensorBoard.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What `corridor train` shows while it waits: the processes' metrics files, read as they grow, in
 // a few lines.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A training's metrics -> scalars by TensorBoard's tags over environment steps. Pure.
 #pragma once
 

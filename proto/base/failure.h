@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How things go wrong: `Failure` for what a user or the world did, CORRIDOR_CHECK for bugs.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One 64-bit hash (XXH3) for everything that is compared or checked: files, trajectories, runs.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // JSON values, and numbers out of those that anybody may have written: get<int>() casts whatever
 // number it finds, which is undefined for 1e87. Pure.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The names of JSON values, for headers. With proto/base/json.h the only user of nlohmann's JSON.
 #pragma once
 

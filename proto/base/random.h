@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Every random number of the system is a pure function of counters: (seed, purpose, indices).
 // Nothing holds a generator, so no order of calls, threads or processes can reach a result, and
 // any draw can be made again after a crash.

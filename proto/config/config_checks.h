@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Whether a scenario's settings fit each other; each is in its own range already
 // (proto/config/config_keys.h). Private to proto/. Pure.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What is said of each key of a scenario beside its value and range.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Every key of a scenario file once: name, comment, who heeds it, value, range. Reading, writing
 // and comparing (proto/config/run_config.cc) are visitors of this description. Private to proto/.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // RunConfigs as values: written, compared, put together. Pure.
 #pragma once
 

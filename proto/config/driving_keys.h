@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The keys of proto/settings/driving_settings.h, as proto/config/config_keys.h describes them.
 // Private to proto/.
 #pragma once

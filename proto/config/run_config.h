@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A scenario file (TOML) -> RunConfig. Every key is known, typed and range-checked; a file may
 // name another with `base = "other.toml"` (relative to itself) and then says only what differs.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What corridor-actor can be asked, and how far it says it is: tasks <-> its command line, which is
 //
 //   corridor-actor COMMAND RUN OPTIONS...

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The checkpoints of a run: what it is at the end of a round, whole on disk or not there at all.
 //
 //   checkpoints/<round>/manifest.json          round; size and XXH3 of every other file

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What evaluations and their episodes are called, by people and in file names.
 #pragma once
 

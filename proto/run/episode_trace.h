@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A driven episode, step by step, for pictures: what corridor-actor says of one, as JSON.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a greedy evaluation came to: evaluation/<planner>_<seed>.json. An actor writes it; the
 // tables and pictures are made from it.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which collisions of an evaluation could have been avoided:
 // evaluation/hindsight/<planner>_<seed>.json. What the verdicts mean is in actor/avoidance.h.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Records <-> JSON objects. A record names each of its members once, for both directions:
 //
 //   template <typename Self, typename Field>

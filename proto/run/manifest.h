@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What made a run: its manifest.json.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Named numbers over training steps, one JSON object a line; names as in CleanRL and TensorBoard
 // ("charts/SPS", "losses/td_loss", "replay/size").
 #pragma once

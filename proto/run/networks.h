@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The networks of a run, as they drive: their files.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // An episode as an evaluation drove it, to be driven again:
 // evaluation/episodes/<planner>_<seed>_<episode>.json.
 #pragma once

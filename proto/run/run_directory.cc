@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "proto/run/run_directory.h"
 
 #include "proto/base/failure.h"

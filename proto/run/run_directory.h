@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where everything of a run lies.
 //
 //   config.toml                  the resolved scenario

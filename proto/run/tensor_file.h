@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Named arrays in one file, in the safetensors format (8-byte header length, JSON header, raw
 // little-endian data), which Python reads with `safetensors` or a few lines of NumPy.
 #pragma once

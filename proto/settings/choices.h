@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The closed sets that a scenario chooses from: an enum each, and its choices' names and meanings.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Who ran into whom: as driving tells it, and as records and tables name it.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What actor/driving needs to know, and no more; see proto/settings/settings.h.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The most that is taken of what anybody may ask for or send.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The networks of a run, by name, in the order in which they are trained. A further one needs an id
 // and a row here, its shape (RunConfig::shape), and what its phase trains it on (actor/rollout.cc).
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The pairs of planners that can be evaluated, in the order of a table's rows: those of the paper's
 // Table I, those behind the safety shield, the naive ones that a table must be read against, and
 // those under the BP of MoP training. What the command may ask an actor for.

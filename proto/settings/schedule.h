@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // When everything happens: training is cut into rounds (docs/architecture.md, "Lockstep"). Every
 // process derives the same schedule from the run's configuration. Pure.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A scenario as plain values: one struct a component, each with the defaults that work. What a
 // field means beyond its name and unit stands with its key: the TOML file's tables and keys have
 // the same names (proto/config/config_keys.h). A component is handed its own structs only.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a scenario's files for SUMO call things, and by which names the world asks SUMO for them.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What actor, replay and learner must agree on about the numbers themselves: the sizes of the
 // planners' observations and actions, the layout of a transition, the layout of a network's
 // parameters. Plain values; no I/O.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Time as an argument: what repeats, measures or gives up takes a Clock or the time itself, so that
 // a test moves it by hand and waits for none. Where a socket or a process is waited for, the wait
 // itself is real.

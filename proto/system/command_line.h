@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What every program's command line does alike. The only user of CLI11.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How files get to disk whole and back: atomic writes, syncs, and errors that name the path.
 #pragma once
 

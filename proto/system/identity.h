@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What tells runs, processes and machines apart. No clock has a part in it.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A process's log: lines "time name level text" on standard error, which its starter keeps. With
 // proto/base/format.h the only user of spdlog. Any thread.
 #pragma once

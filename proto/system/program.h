@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What every main() does the same way: logging, signals, one catch.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Signs of life: a counter in memory that a process shares with the one that started it. A process
 // whose counter stands still hangs, whatever it is that it hangs in.
 #pragma once

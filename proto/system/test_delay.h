@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A test's hook: slows this process at random, since results must not depend on how fast any is.
 #pragma once
 

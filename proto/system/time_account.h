@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where a process's time goes: every moment of its main thread belongs to one part. Always on: a
 // charge is one look at the clock, about 25 ns. One thread. `now`: for tests.
 #pragma once

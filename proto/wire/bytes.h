@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The bytes of a message: being written, looked at, and where they lie once they are complete.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Values <-> bytes. The only user of Cap'n Proto.
 //
 // Decoders take bytes from anywhere: alignment does not matter, nothing larger than a small

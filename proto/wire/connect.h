@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where a run's servers listen, and what every conversation with them does alike.
 #pragma once
 

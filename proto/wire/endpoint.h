@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Requests and replies between processes: ordered, exactly once, with deadlines and bounds. The
 // only user of ZeroMQ. Bodies are opaque bytes here.
 //

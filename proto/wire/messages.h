@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The messages of proto/wire/wire.capnp as plain values; meaning, order and limits are documented
 // there.
 #pragma once

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 @0xb1f0c7d25a9e4e63;
 # Every message between corridor's processes. This file is the reference: who sends what, what
 # answers it, in which order, in which unit, up to which size. proto/wire/messages.h holds the same

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What an actor's step costs beside SUMO's own, part by part (proto/system/time_account.h).
 #include <benchmark/benchmark.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A training step of one network against the arithmetic that it cannot do without: the matrix
 // products of its passes, and one look at every parameter for Adam.
 #include <benchmark/benchmark.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // manoeuvres: a lane change with a temporary cancellation, through the whole chain from targets to
 // the car, as the paper's figure shows it; prints one line every 0.05 s for docs/draw_manoeuvres.
 #include <cmath>

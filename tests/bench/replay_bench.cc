@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The replay server's store, in process: a million rows, batches of 512.
 #include <benchmark/benchmark.h>
 

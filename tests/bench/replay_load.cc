@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // replay_load: plays actors and a learner against one replay server, without SUMO: recorded chunks
 // go in, batches come out, as fast as the server answers. The server is the real loop and service
 // (replay/serve.h) in a process of its own, behind a real ipc socket; actors keep to the lockstep,

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The arithmetic that a training step of a Q-network cannot do without, and nothing else: the
 // matrix products of three forward passes and one backward pass by BLAS, and one pass over
 // parameters and moments.

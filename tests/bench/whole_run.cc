@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // whole_run SCENARIO: trains as a user would, and says where the cores' time went: wall time times
 // cores, by phase and part, from the metrics that every run writes (proto/system/time_account.h).
 #include <cstdio>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // For LD_PRELOAD: the calendar's clock of the process runs backwards, as one that is being set does
 // for a moment. Other clocks are as they are.
 #include <sys/syscall.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What users and the world do wrong: one clear line, a non-zero exit, nothing left running.
 #include <netinet/in.h>
 #include <sys/socket.h>

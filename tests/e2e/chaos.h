@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A training that is disturbed at random, again and again, and must end with the bits of one that
 // was not. What happens when is drawn from a seed; where a process then stands is chance.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // chaos SCENARIO: trains it undisturbed, then again and again while processes are killed, stopped
 // and asked to end at random, and compares the fingerprints. docs/operations.md quotes it.
 #include <chrono>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Kill anything at any time: a short chaos. `chaos` (chaos_main.cc) is the long one.
 #include "tests/e2e/chaos.h"
 

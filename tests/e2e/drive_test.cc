@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Planners in cars with dynamics of their own, and what people are shown of it.
 #include <gmock/gmock.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `corridor experiment`: stopped, killed, gone on with; refused where it would mix two experiments.
 #include <gmock/gmock.h>
 

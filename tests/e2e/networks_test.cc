@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Networks that go from one run to another: `export`, `evaluate` of what it wrote, `train --from`.
 #include <gmock/gmock.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the end-to-end tests share: the command, tiny budgets, and looking for what was left behind.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The whole system on two cores: two actors in real SUMO traffic, the replay server, the learner.
 #include "proto/base/json.h"
 #include "proto/run/run_directory.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What fuzzers have found worth keeping, read again: by every compiler, under every sanitizer.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // libFuzzer's entry; docs/operations.md says how it is run. FUZZ_TARGET chooses the target.
 #include <cstddef>
 #include <cstdint>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What reads bytes that anybody may have written: for a fuzzer, and for the test that feeds them
 // what fuzzers found.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The rules of docs/architecture.md that a compiler does not check.
 #include <gtest/gtest.h>
 
@@ -293,6 +294,39 @@ TEST(House, LinesFitTheirColumns) {
       EXPECT_LE(line.size(), 100u) << file << ":" << number;
     }
   }
+}
+
+// Beside the product's: tests, scenarios, scripts and CMake's files, but for what programs wrote.
+TEST(House, EverySourceNamesItsLicense) {
+  static const std::regex kSource(R"(.*\.(h|cc|hpp|capnp|proto|toml|py)|(.*/)?CMakeLists\.txt)");
+  std::size_t checked = 0;
+  const auto check = [&](const fs::path& path) {
+    const std::string file = fs::relative(path, kRoot).string();
+    std::istringstream text(content_of(path));
+    std::string line;
+    std::getline(text, line);
+    const bool is_script = line.starts_with("#!");
+    if (!is_script && !std::regex_match(file, kSource)) return;
+    if (is_script) std::getline(text, line);
+    EXPECT_TRUE(line == "// SPDX-License-Identifier: Apache-2.0" ||
+                line == "# SPDX-License-Identifier: Apache-2.0")
+        << file << " begins with " << line;
+    ++checked;
+  };
+  check(kRoot / "CMakeLists.txt");
+  check(kRoot / ".ci" / "run");
+  for (const char* folder :
+       {"proto", "scenarios", "actor", "replay", "learner", "cluster", "docs", "tests"}) {
+    for (fs::recursive_directory_iterator entry(kRoot / folder), end; entry != end; ++entry) {
+      const std::string name = fs::relative(entry->path(), kRoot).string();
+      if (name == "tests/fuzz/corpus" || name == "scenarios/trained") {
+        entry.disable_recursion_pending();
+      } else if (entry->is_regular_file()) {
+        check(entry->path());
+      }
+    }
+  }
+  EXPECT_GT(checked, 400u);
 }
 
 TEST(House, EveryPackageIsNamedOnce) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A replay server by a script, for the small run's learner.
 #pragma once
 

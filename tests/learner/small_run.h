@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A whole small run in one process, for the learner's tests: both phases in 11 rounds, the real
 // replay server and made-up actors on threads, talking through real sockets.
 #pragma once

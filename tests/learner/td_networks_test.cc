@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "learner/td_networks.h"
 
 #include <gmock/gmock.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Pearson's test of whether draws follow known probabilities.
 #pragma once
 

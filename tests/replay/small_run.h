@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A run that a replay server can be taken through in milliseconds.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "replay/sum_tree.h"
 
 #include <gmock/gmock.h>

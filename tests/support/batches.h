@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A replay server's batch as a value, for tests that compare or make one.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A driven episode, and what is drawn of one.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A world without a simulator, for tests of what drives in one: vehicles at constant speed, drawn
 // from the episode's seed; the ego follows its trajectories exactly.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Living processes, as /proc shows them.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Drives straight on, ever faster, until the ego hits somebody, and records it as an evaluation
 // does: as rules_5_1.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Records <-> JSON, as all of them are tested.
 #pragma once
 

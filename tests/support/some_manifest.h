@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A manifest as `corridor train` writes it, of no machine.
 #pragma once
 

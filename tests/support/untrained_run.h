@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A run directory as `corridor train` makes it, before anything was trained.
 #pragma once
 

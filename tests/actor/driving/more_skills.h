@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The paper's skills and one more: half a lane to the left, to the edge of the lane.
 #pragma once
 

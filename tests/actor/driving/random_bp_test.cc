@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "actor/driving/random_bp.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Scenes for the driving tests: by hand, and drawn from counters.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Time for cars in tests.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Against traces of CommonRoad's multibody model (data/README.md): 29 states, Pacejka tyres.
 #include <gtest/gtest.h>
 

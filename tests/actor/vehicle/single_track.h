@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The linear single-track model (Rajamani 2012, chapter 2), to measure simulated cars against.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "actor/world/ego_motion.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "proto/config/config_checks.h"
 
 #include <gmock/gmock.h>

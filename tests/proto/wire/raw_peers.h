@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Peers of Client and Server that do what theirs never would: a client and a server that send what
 // a test says, and a link between them that loses and repeats messages.
 #pragma once

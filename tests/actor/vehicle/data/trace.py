@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A trace of CommonRoad's multibody model, steered in a sine of 0.25 Hz: see README.md.
 
     python3 trace.py SPEED_MPS AMPLITUDE_RAD [no-camber-thrust] > FILE.csv

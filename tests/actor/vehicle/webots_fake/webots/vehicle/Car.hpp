@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The part of Webots' C++ API that actor/vehicle/webots_vehicle uses, with the same names, signs
 // and units (Car.hpp, Driver.hpp, Supervisor.hpp, Node.hpp, Field.hpp, which there are five files),
 // over a car in ODE in place of a Webots.
