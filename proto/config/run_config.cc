@@ -6,13 +6,13 @@
 #include <set>
 #include <sstream>
 #include <string_view>
-#include <toml.hpp>
 #include <type_traits>
 
 #include "proto/base/failure.h"
 #include "proto/base/json.h"
 #include "proto/config/config_checks.h"
 #include "proto/config/config_keys.h"
+#include "proto/config/toml_library.h"
 #include "proto/config/toml_text.h"
 #include "proto/system/files.h"
 
@@ -22,6 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 using config_keys::kRetiredKeys;
 using config_keys::RetiredKey;
+using toml_library::text_of;
 
 // What a name or an address is made of: needs no escapes when written.
 constexpr const char* kWordCharacters =
@@ -36,16 +37,39 @@ constexpr const char* kOverride = "override";
 std::string place_of(const toml::source_location& location) {
   return location.file_name() == kOverride
              ? kOverride
-             : fmt::format("{}:{}", location.file_name(), location.line());
+             : fmt::format("{}:{}", location.file_name(), toml_library::line_of(location));
 }
 std::string place_of(const toml::value& value) { return place_of(value.location()); }
 
-// As in the file, cut short.
+// On one line. The TOML library's own writer lays values out differently in every version.
+std::string written(const toml::value& value) {
+  std::vector<std::string> parts;
+  switch (value.type()) {
+    case toml::value_t::boolean:
+      return toml_of(value.as_boolean());
+    case toml::value_t::integer:
+      return fmt::format("{}", value.as_integer());
+    case toml::value_t::floating:
+      return toml_of(value.as_floating());
+    case toml::value_t::string:
+      return Json(text_of(value)).dump(-1, ' ', false, Json::error_handler_t::replace);
+    case toml::value_t::array:
+      for (const toml::value& element : value.as_array()) parts.push_back(written(element));
+      return fmt::format("[{}]", fmt::join(parts, ", "));
+    case toml::value_t::table:
+      for (const auto& [key, member] : value.as_table()) {
+        parts.push_back(fmt::format("{} = {}", key, written(member)));
+      }
+      std::ranges::sort(parts);
+      return fmt::format("{{{}}}", fmt::join(parts, ", "));
+    default:  // dates and times
+      return toml::format(value);
+  }
+}
+
+// For a message: cut short.
 std::string shown(const toml::value& value) {
-  if (value.is_floating()) return toml_of(value.as_floating());
-  constexpr std::size_t kWide = 1 << 20;
-  std::string text = toml::format(value, kWide);
-  std::replace(text.begin(), text.end(), '\n', ' ');
+  std::string text = written(value);
   constexpr std::size_t kShownMax = 80;
   if (text.size() > kShownMax) text = text.substr(0, kShownMax) + " ...";
   return text;
@@ -131,10 +155,10 @@ class Reader {
   void key(const ConfigKey& key, std::string& member) {
     const toml::value* value = find(key);
     if (!value) return;
-    if (!value->is_string() || !is_word(value->as_string().str)) {
+    if (!value->is_string() || !is_word(text_of(*value))) {
       wrong(key, *value, "a name or an address in quotes");
     }
-    member = value->as_string().str;
+    member = text_of(*value);
   }
   template <typename E>
   requires std::is_enum_v<E>
@@ -142,7 +166,7 @@ class Reader {
     const toml::value* value = find(key);
     if (!value) return;
     try {
-      member = parse_choice<E>(value->is_string() ? value->as_string().str : "");
+      member = parse_choice<E>(value->is_string() ? text_of(*value) : "");
     } catch (const Failure& failure) {
       refuse(key.name, *value, failure.what());
     }
@@ -258,8 +282,9 @@ toml::value parse_document(const std::string& text, const std::string& name) {
   try {
     std::istringstream in(text);
     return toml::parse(in, name);
-  } catch (const toml::exception& error) {
-    throw Failure("{}: not valid TOML: {}", place_of(error.location()), first_line(error.what()));
+  } catch (const toml_library::SyntaxError& error) {
+    throw Failure("{}: not valid TOML: {}", place_of(toml_library::location_of(error)),
+                  first_line(error.what()));
   } catch (const std::exception& error) {
     throw Failure("{}: not valid TOML: {}", name, first_line(error.what()));
   }
@@ -292,7 +317,7 @@ toml::value load_document(const fs::path& file, std::vector<fs::path> open) {
     throw Failure("{}: base = {}: must be a file's name in quotes", place_of(base), shown(base));
   }
   document.as_table().erase("base");
-  toml::value whole = load_document(file.parent_path() / base.as_string().str, std::move(open));
+  toml::value whole = load_document(file.parent_path() / text_of(base), std::move(open));
   merge(whole, document);
   return whole;
 }
@@ -333,7 +358,7 @@ Json as_json(const toml::value& value) {
     case toml::value_t::floating:
       return value.as_floating();
     case toml::value_t::string:
-      return value.as_string().str;
+      return text_of(value);
     case toml::value_t::array: {
       Json list = Json::array();
       for (const toml::value& element : value.as_array()) list.push_back(as_json(element));

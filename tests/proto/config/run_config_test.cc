@@ -91,6 +91,24 @@ TEST(RunConfig, WrongValuesAreNamedWithFileLineKeyValueAndRange) {
             "override: mop.gamma = 1.5: must be a number from 0 to 0.99999");
 }
 
+TEST(RunConfig, WrongValuesAreShownOnOneLineAsEveryVersionOfTheLibraryReadsThem) {
+  const auto shown = [](const std::string& value) {
+    const std::string fault = fault_in("[run]\nactors = " + value);
+    const std::string head = "test.toml:2: run.actors = ";
+    EXPECT_TRUE(fault.starts_with(head)) << fault;
+    return fault.substr(head.size(), fault.rfind(": must be ") - head.size());
+  };
+  EXPECT_EQ(shown("0x1_000  # of them"), "4096");
+  EXPECT_EQ(shown("1.50"), "1.5");
+  EXPECT_EQ(shown("'lit\"eral'"), R"("lit\"eral")");
+  EXPECT_EQ(shown("\"\"\"\ntwo\nlines\"\"\""), R"("two\nlines")");
+  EXPECT_EQ(shown("[1,\n 2.0, [], [true]]"), "[1, 2.0, [], [true]]");
+  EXPECT_EQ(shown("{x = 1, a = ['b']}"), R"({a = ["b"], x = 1})");
+  EXPECT_EQ(shown("1979-05-27"), "1979-05-27");
+  EXPECT_EQ(shown("[" + std::string(100, ' ') + "1]"), "[1]");
+  EXPECT_EQ(shown('"' + std::string(100, 'x') + '"'), '"' + std::string(79, 'x') + " ...");
+}
+
 struct Bad {
   const char* override;
   const char* why;
