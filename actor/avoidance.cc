@@ -236,13 +236,13 @@ void report_hindsight(const RunConfig& config, const LookBackTask& task,
                       const RunDirectory& directory, world::World& world,
                       const std::function<bool(std::int64_t, std::int64_t)>& progress) {
   task.limits.check();
-  const EvaluationRecord evaluated =
-      read_evaluation(directory.evaluation({task.planner, task.seed}));
+  const RunDirectory driven = task.evaluated ? RunDirectory::open(*task.evaluated) : directory;
+  const EvaluationRecord evaluated = read_evaluation(driven.evaluation({task.planner, task.seed}));
   HindsightRecord record{task.planner, task.seed, evaluated.steps, task.limits, {}};
   for (const EpisodeRecord& episode : evaluated.per_episode) {
     if (episode.collisions == 0) continue;
     const RecordedEpisode recorded =
-        read_own_episode(config, directory.episode({task.planner, task.seed, episode.episode}));
+        read_own_episode(config, driven.episode({task.planner, task.seed, episode.episode}));
     record.collisions.push_back(look_back(config, recorded, world, task.limits));
     if (!progress(static_cast<std::int64_t>(record.collisions.size()), evaluated.collisions))
       return;

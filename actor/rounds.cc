@@ -41,8 +41,8 @@ class Trainer {
         delay_(delay),
         schedule_(config),
         metrics_(directory.metrics(actor_name(actor_))),
-        replay_(connect_to_replay(config.run, identity)),
-        learner_(connect_to_learner(config.run, identity)) {}
+        replay_(connect_to_replay(config.run, identity, directory.root())),
+        learner_(connect_to_learner(config.run, identity, directory.root())) {}
 
   void run() {
     replay_.send(encode(ReplayRequest(Join{})));

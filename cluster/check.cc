@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cluster/check.h"
 
-#include <cerrno>
-#include <cstdlib>
-#include <cstring>
-
 #include "proto/base/failure.h"
 #include "proto/base/text.h"
+#include "proto/config/doubts.h"
 #include "proto/config/run_config.h"
 #include "proto/settings/schedule.h"
 #include "proto/system/files.h"
@@ -55,15 +52,12 @@ std::string summary(const RunConfig& config) {
 
 }  // namespace
 
-int check(const std::filesystem::path& scenario) {
-  const RunConfig config = load_run_config(scenario);
-  std::string folder = std::filesystem::temp_directory_path() / "corridor-check-XXXXXX";
-  if (mkdtemp(folder.data()) == nullptr) {
-    throw Failure("cannot create {}: {}", folder, std::strerror(errno));
-  }
-  const FolderInTheMaking never_kept(folder);
-  scenarios::write_sumo_files(config, folder);
+int check(const std::filesystem::path& scenario, const std::vector<std::string>& settings) {
+  const RunConfig config = load_run_config(scenario, settings);
+  const NewFolder never_kept(std::filesystem::temp_directory_path() / "corridor-check");
+  scenarios::write_sumo_files(config, never_kept.path());
   fmt::print("{}: ok\n{}", scenario.string(), summary(config));
+  for (const std::string& doubt : doubts_about(config)) fmt::print("  warning     {}\n", doubt);
   return 0;
 }
 

@@ -40,6 +40,7 @@ struct Arguments {
   DriveOptions drive;
   std::filesystem::path run;
   std::filesystem::path scenario;
+  std::vector<std::string> settings;
   std::string world;
   std::string episode;
   std::filesystem::path exported;
@@ -118,7 +119,13 @@ void declare_drive(CLI::App& app, Arguments& arguments) {
   app.add_option("--seconds", options.seconds, "to show")->capture_default_str();
   app.add_option("--interval", options.interval_s, "seconds between the contact sheet's pictures")
       ->capture_default_str();
-  app.add_option("--out", options.out, "folder to write to (the world's drives/)");
+  app.add_option("--out", options.out, "folder to write to (drives/ beside the evaluation)");
+  app.add_flag("!--no-film", options.film, "contact sheet and player only: needs no ffmpeg");
+}
+
+void declare_out(CLI::App& app, std::filesystem::path& out) {
+  app.add_option("--out", out,
+                 "folder for results (the run itself; for an exported one, evaluated/ here)");
 }
 
 void declare_evaluate(CLI::App& app, Arguments& arguments) {
@@ -134,7 +141,9 @@ void declare_evaluate(CLI::App& app, Arguments& arguments) {
       ->check(whole_number(1, kStepsMax));
   declare_seeds(app, options.seeds);
   declare_jobs(app, options.jobs, kProcesses);
-  app.add_option("--json", options.json, "write the figures of each planner and seed to this file");
+  declare_out(app, options.out);
+  app.add_option("--json", options.json,
+                 "write the figures of each planner and seed to this file; -: to standard output");
   app.add_option("--fcd", options.fcd,
                  "have SUMO write the trajectories of every episode into this directory");
 }
@@ -153,6 +162,7 @@ void declare_hindsight(CLI::App& app, Arguments& arguments) {
       ->capture_default_str()
       ->check(whole_number(1, kCountMax));
   declare_jobs(app, options.jobs, kProcesses);
+  declare_out(app, options.out);
 }
 
 int run_fingerprint(const Arguments& arguments) {
@@ -178,10 +188,13 @@ const Command kCommands[] = {
      declare_train, [](const Arguments& a) { return train(a.train, a.program); }},
     {"resume", "Go on with a training from its newest checkpoint",
      "corridor resume runs/first\n"
-     "  corridor resume runs/first --set schedule.checkpoint_every_steps=20000",
+     "  corridor resume runs/first --set schedule.checkpoint_every_steps=20000\n"
+     "  corridor resume runs/first --set bp.steps=800000",
      [](CLI::App& app, Arguments& a) {
        declare_run(app, a.resume.run);
        declare_settings(app, a.resume.settings);
+       app.add_flag("--allow-other-bits", a.resume.allow_other_bits,
+                    "go on with other libraries than so far; the manifest says so");
      },
      [](const Arguments& a) { return resume(a.resume, a.program); }},
     {"evaluate", "Drive planners greedily on held-out traffic and print the paper's table",
@@ -241,12 +254,25 @@ const Command kCommands[] = {
      },
      [](const Arguments& a) -> int { redrive(a.run, a.episode); }},
     {"check", "Say whether a scenario is right, and what it comes to",
-     "corridor check scenarios/paper.toml",
+     "corridor check scenarios/paper.toml\n"
+     "  corridor check scenarios/smoke.toml --set mop.steps=3000",
      [](CLI::App& app, Arguments& a) {
        app.add_option("FILE", a.scenario, "scenario file (TOML)")->required();
+       declare_settings(app, a.settings);
      },
-     [](const Arguments& a) { return check(a.scenario); }},
+     [](const Arguments& a) { return check(a.scenario, a.settings); }},
 };
+
+// A first word that is no command.
+void refuse_unknown(const char* word) {
+  if (word[0] == '-' || std::ranges::any_of(kCommands, [&](const Command& command) {
+        return std::string_view(command.name) == word;
+      })) {
+    return;
+  }
+  throw Failure("there is no command '{}': choose among {}", word,
+                listed(kCommands, ", ", &Command::name));
+}
 
 }  // namespace
 
@@ -257,11 +283,13 @@ int run_command(int argc, const char* const* argv) {
   app.footer("`corridor COMMAND --help` tells more, with examples.");
   Arguments arguments;
   arguments.program = argv[0];
+  if (argc > 1) refuse_unknown(argv[1]);
   for (const Command& command : kCommands) {
     CLI::App* declared = app.add_subcommand(command.name, command.summary);
     declared->set_version_flag("--version", kVersion, "print the version");
     declared->footer(fmt::format("Examples:\n  {}", command.examples));
     command.declare(*declared, arguments);
+    refuse_empty_values(*declared);
   }
   if (const auto done = parse_command_line(app, arguments.program, argc, argv)) return *done;
   const auto given = std::ranges::find_if(

@@ -3,17 +3,18 @@
 
 #include <chrono>
 #include <cmath>
-#include <cstdio>
 
 #include "cluster/launch/traced_episode.h"
 #include "cluster/pictures/clip.h"
 #include "cluster/pictures/contact_sheet.h"
 #include "cluster/pictures/film.h"
 #include "cluster/pictures/player.h"
+#include "cluster/watch/display.h"
 #include "proto/base/failure.h"
 #include "proto/base/format.h"
 #include "proto/run/evaluation_record.h"
 #include "proto/run/run_directory.h"
+#include "proto/system/clock.h"
 #include "proto/system/files.h"
 
 namespace corridor::cluster {
@@ -69,7 +70,10 @@ int drive(const DriveOptions& options) {
     throw Failure("--from {} --seconds {} --interval {}: give a stretch of time", options.from_s,
                   options.seconds, options.interval_s);
   }
+  if (options.film) find_ffmpeg();
   const EvaluationPlace place = evaluation_place(options.run, options.world);
+  const fs::path out = options.out.empty() ? place.directory.root() / "drives" : options.out;
+  create_folders(out);
   std::vector<Clip> clips;
   std::string name;
   if (options.collisions) {
@@ -94,25 +98,22 @@ int drive(const DriveOptions& options) {
   }
   for (Clip& clip : clips) clip.speed_changes_mps = place.config.planner.speed_changes_mps;
 
-  const fs::path out = options.out.empty() ? place.directory.root() / "drives" : options.out;
-  create_folders(out);
   const fs::path film = out / (name + ".mp4"), sheet = out / (name + ".png"),
                  player = out / (name + ".html");
   write_file(sheet, contact_sheet(clips, options.interval_s).png());
   write_file(player, player_page(clips));
-  int shown = -1;
-  write_film(clips, film, [&](double share) {
-    const int percent = static_cast<int>(100 * share);
-    if (percent / 10 == shown / 10 && shown >= 0) return;
-    shown = percent;
-    fmt::print("film {} %\n", percent);
-    std::fflush(stdout);
-  });
+  fmt::print("contact sheet {}\nplayer {}\n", sheet.string(), player.string());
+  if (options.film) {
+    ProgressDisplay progress;
+    write_film(clips, film, [&](double share) {
+      progress.show({fmt::format("film {:.0f} %", 100 * share)}, monotonic_s());
+    });
+    fmt::print("film {}\n", film.string());
+  }
   double seconds = 0.0;
   for (const Clip& clip : clips) seconds += clip.duration_s();
-  fmt::print("{:.0f} s of driving{}\n  film {}\n  contact sheet {}\n  player {}\n", seconds,
-             clips.back().trace.collision ? ", ends with a collision" : "", film.string(),
-             sheet.string(), player.string());
+  fmt::print("{:.0f} s of driving{}\n", seconds,
+             clips.back().trace.collision ? ", ends with a collision" : "");
   return 0;
 }
 

@@ -23,7 +23,8 @@ struct DriveOptions {
   double from_s = 0.0;                     // after the episode's start
   double seconds = 60.0;
   double interval_s = 2.0;         // between the contact sheet's instants
-  std::filesystem::path out = {};  // folder; empty: DIR/drives
+  std::filesystem::path out = {};  // folder; empty: drives/ where the world's results are
+  bool film = true;
 };
 
 // Drives an episode, a recorded one, or the last seconds before each collision of an evaluation,

@@ -18,6 +18,7 @@
 #include "proto/settings/planner_pairs.h"
 #include "proto/system/clock.h"
 #include "proto/system/files.h"
+#include "proto/system/processors.h"
 #include "proto/system/subprocess.h"
 
 namespace corridor::cluster {
@@ -28,18 +29,6 @@ void refuse_repeated(std::vector<T> values, const char* what) {
   std::sort(values.begin(), values.end());
   const auto repeated = std::adjacent_find(values.begin(), values.end());
   if (repeated != values.end()) throw Failure("{} {} is given twice", what, *repeated);
-}
-
-// Now rather than after the driving.
-void check_can_write(const std::filesystem::path& file) {
-  std::error_code ignored;
-  if (std::filesystem::is_directory(file, ignored)) {
-    throw Failure("cannot write {}: it is a directory", file.string());
-  }
-  // With the dot, a file is no folder.
-  if (access((parent_of(file) / ".").c_str(), W_OK) != 0) {
-    throw Failure("cannot write {}: {}", file.string(), std::strerror(errno));
-  }
 }
 
 }  // namespace
@@ -66,7 +55,11 @@ int parallel_jobs(std::optional<int> jobs) {
 }
 
 int evaluate(const EvaluateOptions& options) {
-  const EvaluationPlace place = evaluation_place(options.run, options.world);
+  std::optional<OutputFile> json;
+  if (!options.json.empty()) json.emplace(options.json);
+  // Nothing else comes where JSON is to.
+  std::FILE* const out = json && json->is_standard_output() ? stderr : stdout;
+  const EvaluationPlace place = evaluation_place(options.run, options.world, options.out);
   const auto& [trained, directory, config] = place;
   const std::int64_t steps = options.steps.value_or(config.evaluation.steps);
   if (steps < 1) throw Failure("--steps {}: at least 1 is needed", steps);
@@ -74,22 +67,24 @@ int evaluate(const EvaluateOptions& options) {
       chosen_tasks(options.planners, options.seeds, steps, config);
   for (const EvaluateTask& task : tasks) check_can_drive(task.planner, place);
   const int parallel = parallel_jobs(options.jobs);
-  if (!options.json.empty()) check_can_write(options.json);
 
   std::vector<ProcessPlan> plan;
   std::vector<StepTask> shown;
   for (EvaluateTask task : tasks) {
-    if (!options.world.is_own()) task.networks = trained.root();
+    if (directory.root() != trained.root()) task.networks = trained.root();
     if (!options.fcd.empty()) task.fcd = options.fcd;
     plan.push_back(
         actor_process(fmt::format("evaluate-{}-{}", task.planner, task.seed), task, directory));
     shown.push_back({fmt::format("{} {}", task.planner, task.seed), steps, 0, plan.back().log,
                      parse_step_count});
   }
-  StepProgress progress("evaluation", std::move(shown), monotonic_s());
-  const int signal = run_queue(plan, parallel, Limits{}, [&] { progress.tick(monotonic_s()); });
+  int signal = 0;
+  {
+    StepProgress progress("evaluation", std::move(shown), monotonic_s(), "steps", out);
+    signal = run_queue(plan, parallel, limits_of(config), [&] { progress.tick(monotonic_s()); });
+  }
   if (signal != 0) {
-    fmt::print("stopped: no table\n");
+    fmt::print(out, "stopped: no table\n");
     return 128 + signal;
   }
 
@@ -99,19 +94,19 @@ int evaluate(const EvaluateOptions& options) {
     results.push_back(read_evaluation(directory.evaluation({task.planner, task.seed})));
     of_this_run.push_back({config.run.seed, results.back()});
   }
-  fmt::print("\n{}: {} steps for each planner and seed\n", directory.root().string(),
-             grouped(steps));
+  fmt::print(out, "\n{}: {} steps for each planner and seed\n{}\n", directory.root().string(),
+             grouped(steps), world_text(config));
   for (const Table& table : results_tables(arms_of(of_this_run))) {
-    fmt::print("\n{}", text_of(table));
+    fmt::print(out, "\n{}", text_of(table));
   }
-  fmt::print("\n{}", text_of(paper_table()));
-  if (!options.json.empty()) {
-    OrderedJson json = OrderedJson::array();
-    for (const EvaluationRecord& result : results) json.push_back(totals_json(result));
-    write_file(options.json, json.dump(2) + "\n");
+  fmt::print(out, "\n{}", text_of(paper_table()));
+  if (json) {
+    OrderedJson totals = OrderedJson::array();
+    for (const EvaluationRecord& result : results) totals.push_back(totals_json(result));
+    json->write(totals.dump(2) + "\n");
   }
-  fmt::print("\nepisodes in {}; drive one again with corridor redrive\n",
-             directory.episodes().string());
+  fmt::print(out, "\nepisodes in {}; drive one again with corridor redrive {}\n",
+             directory.episodes().string(), shell_quoted(directory.root().string()));
   return 0;
 }
 

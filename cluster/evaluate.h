@@ -21,7 +21,8 @@ struct EvaluateOptions {
   std::optional<std::int64_t> steps = {};  // for each planner and seed; else [evaluation] steps
   std::vector<std::uint64_t> seeds = {};   // empty: [evaluation] seeds
   std::optional<int> jobs = {};            // processes at a time; else the number of cores
-  std::filesystem::path json = {};         // empty: none
+  std::filesystem::path out = {};          // folder for results; empty: results_folder
+  std::filesystem::path json = {};         // empty: none; "-": standard output
   std::filesystem::path fcd = {};          // directory of SUMO's trajectories; empty: none
 };
 

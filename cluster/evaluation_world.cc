@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cluster/evaluation_world.h"
 
+#include <unistd.h>
+
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 
 #include "proto/base/failure.h"
 #include "proto/config/config_values.h"
@@ -37,24 +41,45 @@ RunConfig config_in(const RunConfig& trained, const EvaluationWorld& world,
   return config;
 }
 
-RunDirectory world_directory(const RunDirectory& run, const RunConfig& config,
-                             const std::string& name) {
-  const std::filesystem::path root = RunDirectory::scenarios(run.root()) / name;
-  if (std::filesystem::exists(root / "manifest.json")) {
-    RunDirectory directory = RunDirectory::open(root);
-    if (changed_keys(load_run_config(directory.config()), config).empty()) return directory;
-    throw Failure("{} holds what was driven with other settings than {}'s: move it away",
-                  root.string(), name);
+// Of earlier evaluations of the same networks with the same settings.
+void check_results_of(const RunDirectory& directory, const RunDirectory& trained,
+                      const RunConfig& config) {
+  const auto refuse = [&](const char* what) {
+    throw Failure("{} holds results of {}: choose another --out, or move it away",
+                  directory.root().string(), what);
+  };
+  if (read_manifest(directory).run_id != read_manifest(trained).run_id) refuse("another run");
+  if (!changed_keys(load_run_config(directory.config()), config).empty()) refuse("other settings");
+}
+
+RunDirectory results_directory(const std::filesystem::path& root, const RunDirectory& trained,
+                               const RunConfig& config) {
+  if (!std::filesystem::exists(root / kManifestFile)) {
+    NewRun made(root);
+    scenarios::write_sumo_files(config, made.directory().network().parent_path());
+    write_file(made.directory().config(), to_toml(config));
+    RunManifest manifest = read_manifest(trained);
+    manifest.trained = std::filesystem::canonical(trained.root());
+    write_manifest(made.directory(), manifest);
+    made.publish();  // or another process has
   }
-  // Somebody was stopped before it was complete.
-  on_disk("remove", root, [&] { std::filesystem::remove_all(root); });
-  RunDirectory directory = RunDirectory::create(root);
-  FolderInTheMaking made(root);
-  scenarios::write_sumo_files(config, directory.network().parent_path());
-  write_file(directory.config(), to_toml(config));
-  write_manifest(directory, read_manifest(run));
-  made.keep();
+  RunDirectory directory = RunDirectory::open(root);
+  check_results_of(directory, trained, config);
   return directory;
+}
+
+// Whose networks drive.
+RunDirectory trained_run(const RunDirectory& given) {
+  const auto trained = read_manifest(given).trained;
+  return trained ? RunDirectory::open(*trained) : given;
+}
+
+void check_writable(const RunDirectory& directory) {
+  const std::filesystem::path folder = directory.episodes();
+  if (std::filesystem::exists(folder) && access(folder.c_str(), W_OK) != 0) {
+    throw Failure("cannot write to {}: {}; --out DIR puts results elsewhere", folder.string(),
+                  std::strerror(errno));
+  }
 }
 
 }  // namespace
@@ -69,10 +94,14 @@ std::string EvaluationWorld::name(const std::string& own) const {
   return text;
 }
 
-EvaluationPlace evaluation_place(const std::filesystem::path& run, const EvaluationWorld& world) {
-  const RunDirectory trained = RunDirectory::open(run);
-  EvaluationPlace place{trained, trained, load_run_config(trained.config())};
+EvaluationPlace evaluation_place(const std::filesystem::path& run, const EvaluationWorld& world,
+                                 const std::filesystem::path& out) {
+  const RunDirectory given = RunDirectory::open(run);
+  const RunDirectory trained = trained_run(given);
+  EvaluationPlace place{trained, given, load_run_config(given.config())};
+  std::filesystem::path results = out.empty() ? results_folder(given) : out;
   if (!world.is_own()) {
+    place.config = load_run_config(trained.config());
     const std::string name =
         world.name(world.scenario.empty() ? read_manifest(trained).scenario_name() : "");
     const int lanes = place.config.road.lanes;
@@ -81,13 +110,13 @@ EvaluationPlace evaluation_place(const std::filesystem::path& run, const Evaluat
       throw Failure("{} has {} lanes, and the networks of {} were trained on {}", name,
                     place.config.road.lanes, run.string(), lanes);
     }
-    place.directory = world_directory(trained, place.config, name);
+    results = RunDirectory::scenarios(results) / name;
   }
-  // An exported run has neither.
-  place.directory.create_folders();
-  if (!std::filesystem::exists(place.directory.network())) {
-    scenarios::write_sumo_files(place.config, place.directory.network().parent_path());
+  std::error_code missing;
+  if (!std::filesystem::equivalent(results, given.root(), missing)) {
+    place.directory = results_directory(results, trained, place.config);
   }
+  check_writable(place.directory);
   return place;
 }
 

@@ -24,15 +24,18 @@ struct EvaluationWorld {
 // One run's planners in one world.
 struct EvaluationPlace {
   RunDirectory trained;
-  RunDirectory directory;  // `trained` where the world is its own, else its scenarios/<name>
+  RunDirectory directory;  // for results: `trained` itself, or a run directory without networks
   RunConfig config;        // of `directory`
 };
 
-// Makes what is not there yet: the directory of another world, which is a run directory without
-// checkpoints, and SUMO's files. Another world's config.toml is in_world (proto/config) of the two.
-// Throws Failure when the run's networks do not fit that world, for a setting that is not the
-// world's, and when the directory holds what was driven with other settings.
-EvaluationPlace evaluation_place(const std::filesystem::path& run, const EvaluationWorld& world);
+// `run`: a trained one, or a directory with results of one. Results go to `out`; where that is
+// empty, to results_folder (proto/run/manifest.h): the run's own world's there, another one's into
+// its scenarios/<name>. Makes what is not there yet; several processes may do so at a time. Another
+// world's config.toml is in_world (proto/config) of the two. Throws Failure when the run's networks
+// do not fit that world, for a setting that is not the world's, and when the directory holds
+// anything else, or cannot be written to.
+EvaluationPlace evaluation_place(const std::filesystem::path& run, const EvaluationWorld& world,
+                                 const std::filesystem::path& out = {});
 
 // Throws Failure when there is no such planner, when it cannot drive in that world, and when the
 // run's newest checkpoint does not have what it drives with.

@@ -9,6 +9,7 @@
 #include "cluster/launch/describe_run.h"
 #include "cluster/launch/local.h"
 #include "cluster/launch/plan.h"
+#include "cluster/launch/run_lock.h"
 #include "cluster/results/results_tables.h"
 #include "cluster/watch/step_progress.h"
 #include "proto/base/failure.h"
@@ -54,19 +55,24 @@ std::vector<Evaluation> evaluations_of(const Experiment& experiment,
   return evaluations;
 }
 
-bool has_begun(const TrainingRun& run) { return fs::exists(run.root / "manifest.json"); }
+bool has_begun(const TrainingRun& run) { return fs::exists(run.root / kManifestFile); }
 
 // The directory of this experiment, new or of an earlier start.
 void claim(const fs::path& directory, const fs::path& file) {
   constexpr const char* kFolders[] = {"runs", "log"};
-  create_folders(directory, kFolders);
   const fs::path copy = directory / "experiment.toml";
   if (!fs::exists(copy)) {
+    if (fs::exists(directory) && !is_empty_folder(directory)) {
+      throw Failure("{} has something else than an experiment in it: choose another directory",
+                    directory.string());
+    }
+    create_folders(directory);
     write_file(copy, read_file(file));
   } else if (read_file(copy) != read_file(file)) {
     throw Failure("{} holds another experiment than {}: choose another directory, or put {} back",
                   directory.string(), file.string(), copy.string());
   }
+  create_folders(directory, kFolders);
 }
 
 void check_same_settings(const TrainingRun& run) {
@@ -82,8 +88,6 @@ void check_same_settings(const TrainingRun& run) {
 ProcessPlan training_process(const TrainingRun& run, const fs::path& log) {
   const std::string program = program_path("corridor");
   if (has_begun(run)) return {run.name(), {program, "resume", run.root.string()}, log};
-  // Whoever began it was killed before it was a run.
-  on_disk("remove", run.root, [&] { fs::remove_all(run.root); });
   return {run.name(), train_command(run, program), log};
 }
 
@@ -110,7 +114,9 @@ int train_all(const std::vector<TrainingRun>& runs, const fs::path& directory, i
     }
   }
   Limits limits;
-  limits.others = Milliseconds(10'000);  // each of them ends processes of its own
+  // Each of them ends processes of its own, after a checkpoint. It is they who see who hangs.
+  limits.others = Milliseconds(120'000);
+  limits.repeated_signal = Milliseconds(1000);
   StepProgress progress("training", std::move(tasks), monotonic_s());
   for (const auto& queue : {plan, later}) {
     const int signal = run_queue(queue, std::max(1, cores / kCoresPerTraining), limits,
@@ -149,6 +155,16 @@ std::vector<SeedResult> results_in(const std::vector<Evaluation>& evaluations,
   return results;
 }
 
+// Of one training's evaluations in a world.
+RunConfig config_of(const std::vector<Evaluation>& evaluations, const TrainingArm& training,
+                    const std::string& world) {
+  const auto one = std::ranges::find_if(evaluations, [&](const Evaluation& evaluation) {
+    return evaluation.run->training == &training && evaluation.world == world;
+  });
+  CORRIDOR_CHECK(one != evaluations.end(), "{} in {}", training.name, world);
+  return load_run_config(one->place.config());
+}
+
 Table runs_table(const std::vector<TrainingRun>& runs) {
   Table table{"Training runs", {"run", "scenario", "training seed", "settings", "fingerprint"}, {}};
   for (const TrainingRun& run : runs) {
@@ -176,7 +192,8 @@ void write_results(const Experiment& experiment, const std::vector<TrainingRun>&
       const std::vector<SeedResult> results = results_in(evaluations, training, world);
       const std::vector<Table> tables = results_tables(arms_of(results));
       const std::string title = fmt::format("{}, evaluated in {}", training.name, world);
-      text += fmt::format("\n## {}\n", title);
+      text += fmt::format("\n## {}\n\n{}\n", title,
+                          world_text(config_of(evaluations, training, world)));
       for (const Table& table : tables) text += fmt::format("\n{}", markdown_of(table));
       fmt::print("\n{}\n{}", title, text_of(tables.front()));
       for (const SeedResult& result : results) {
@@ -199,6 +216,7 @@ int experiment(const ExperimentOptions& options, const std::string& program) {
   const Experiment experiment = load_experiment(options.file);
   const int cores = parallel_jobs(options.jobs);
   claim(options.directory, options.file);
+  const Descriptor lock = lock_folder(options.directory);
   const std::vector<TrainingRun> runs = runs_of(experiment, options.directory);
 
   int signal = train_all(runs, options.directory, cores);
@@ -208,8 +226,9 @@ int experiment(const ExperimentOptions& options, const std::string& program) {
     signal = evaluate_all(evaluations, options.directory, cores);
   }
   if (signal != 0) {
-    fmt::print("stopped; go on with the same command: {} experiment {} --run {}\n", program,
-               options.file.string(), options.directory.string());
+    fmt::print("stopped; go on with the same command: {} experiment {} --run {}\n",
+               shell_quoted(program), shell_quoted(options.file.string()),
+               shell_quoted(options.directory.string()));
     return 128 + signal;
   }
   write_results(experiment, runs, evaluations, options);

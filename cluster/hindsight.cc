@@ -2,13 +2,14 @@
 #include "cluster/hindsight.h"
 
 #include "cluster/evaluate.h"
+#include "cluster/evaluation_world.h"
 #include "cluster/launch/local.h"
 #include "cluster/launch/plan.h"
 #include "cluster/results/results_tables.h"
 #include "cluster/watch/step_progress.h"
 #include "proto/base/failure.h"
-#include "proto/config/run_config.h"
 #include "proto/run/evaluation_record.h"
+#include "proto/run/manifest.h"
 #include "proto/system/clock.h"
 
 namespace corridor::cluster {
@@ -26,8 +27,10 @@ EvaluationRecord evaluated(const EvaluateTask& task, const RunDirectory& directo
 }  // namespace
 
 int hindsight(const HindsightOptions& options) {
-  const RunDirectory directory = RunDirectory::open(options.run);
-  const RunConfig config = load_run_config(directory.config());
+  // An evaluation lies where its results went, an exported run's not in the run.
+  const RunDirectory evaluation = open_results(options.run);
+  const auto [trained, directory, config] =
+      evaluation_place(evaluation.root(), EvaluationWorld{}, options.out);
   const std::vector<EvaluateTask> tasks =
       chosen_tasks(options.planners, options.seeds, config.evaluation.steps, config);
   const int parallel = parallel_jobs(options.jobs);
@@ -35,29 +38,31 @@ int hindsight(const HindsightOptions& options) {
   std::vector<EvaluationRecord> evaluations;
   std::vector<ProcessPlan> plan;
   std::vector<StepTask> shown;
-  for (const EvaluateTask& evaluation : tasks) {
-    const LookBackTask task{evaluation.planner, evaluation.seed, options.limits};
-    evaluations.push_back(evaluated(evaluation, directory));
+  for (const EvaluateTask& asked : tasks) {
+    LookBackTask task{asked.planner, asked.seed, options.limits};
+    if (!options.out.empty()) task.evaluated = evaluation.root();
+    evaluations.push_back(evaluated(asked, evaluation));
     plan.push_back(
         actor_process(fmt::format("hindsight-{}-{}", task.planner, task.seed), task, directory));
     shown.push_back({fmt::format("{} {}", task.planner, task.seed), evaluations.back().collisions,
                      0, plan.back().log, parse_step_count});
   }
   StepProgress progress("hindsight", std::move(shown), monotonic_s(), "collisions");
-  const int signal = run_queue(plan, parallel, Limits{}, [&] { progress.tick(monotonic_s()); });
+  const int signal =
+      run_queue(plan, parallel, limits_of(config), [&] { progress.tick(monotonic_s()); });
   if (signal != 0) {
     fmt::print("stopped: no table\n");
     return 128 + signal;
   }
 
   std::vector<HindsightRecord> results;
-  for (const EvaluationRecord& evaluation : evaluations) {
-    const EvaluationName name = evaluation.name();
+  for (const EvaluationRecord& of : evaluations) {
+    const EvaluationName name = of.name();
     results.push_back(read_hindsight(directory.hindsight(name)));
-    if (results.back().steps != evaluation.steps ||
-        std::ssize(results.back().collisions) != evaluation.collisions) {
+    if (results.back().steps != of.steps ||
+        std::ssize(results.back().collisions) != of.collisions) {
       throw Failure("{} is not about what {} says now: has it been evaluated meanwhile? Try again",
-                    directory.hindsight(name).string(), directory.evaluation(name).string());
+                    directory.hindsight(name).string(), evaluation.evaluation(name).string());
     }
   }
   fmt::print("\n{}\n\n{}", directory.root().string(), text_of(hindsight_table(results)));

@@ -17,6 +17,7 @@ struct HindsightOptions {
   std::vector<std::string> planners = {};  // empty: those evaluated by default
   std::vector<std::uint64_t> seeds = {};   // empty: [evaluation] seeds
   HindsightLimits limits = {};             // of a search
+  std::filesystem::path out = {};          // folder for results; empty: beside the evaluation
   std::optional<int> jobs = {};            // processes at a time; else the number of cores
 };
 

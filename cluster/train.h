@@ -4,9 +4,13 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
+
+#include "cluster/launch/describe_run.h"
+#include "proto/run/manifest.h"
 
 namespace corridor::cluster {
 
@@ -22,6 +26,7 @@ struct TrainOptions {
 struct ResumeOptions {
   std::filesystem::path run = {};
   std::vector<std::string> settings = {};  // "table.key=value"
+  bool allow_other_bits = false;           // by other libraries
 };
 
 // Both return the process's exit status: 0 when the training is complete, 128 + signal when it was
@@ -30,9 +35,15 @@ struct ResumeOptions {
 // program, for what comes next.
 //
 // resume: settings may differ from those that the run began with, in config.toml or `settings`,
-// where they do not change its result; others are refused by name. A damaged checkpoint is named
-// and set aside, and the one before is used.
-int train(const TrainOptions& options, const std::string& program);
-int resume(const ResumeOptions& options, const std::string& program);
+// where they do not change its result; others are refused by name, and so are other libraries than
+// it was trained with, unless they are allowed. A phase may go on for longer than it was to, as
+// long as no later one has begun. What has changed so is in the manifest. A damaged checkpoint is
+// named and set aside, and the one before is used.
+// `versions`: what is installed.
+using Versions = std::function<RunVersions()>;
+int train(const TrainOptions& options, const std::string& program,
+          const Versions& versions = versions_here);
+int resume(const ResumeOptions& options, const std::string& program,
+           const Versions& versions = versions_here);
 
 }  // namespace corridor::cluster

@@ -13,7 +13,6 @@
 #include "proto/run/metrics.h"
 #include "proto/run/run_directory.h"
 #include "proto/system/command_line.h"
-#include "proto/system/files.h"
 #include "proto/system/identity.h"
 #include "proto/system/log.h"
 #include "proto/system/program.h"
@@ -26,19 +25,19 @@ namespace {
 
 using namespace corridor;
 
-// Into the log and beside config.toml: what the bits and the speed depend on.
-void record_libraries(const RunDirectory& directory, Device device) {
+// What the bits and the speed depend on: the manifest has it, from `corridor`, which asks for it.
+void log_libraries(Device device) {
   const learner::Blas blas = learner::blas_in_use();
   log_info("LibTorch {} on {}, BLAS {} {}", learner::libtorch_version(), name_of(device),
            blas.library, blas.core);
   const std::string warning = learner::warning_about(blas);
   if (!warning.empty()) log_warning(warning);
-  const Json record = {{"libtorch", learner::libtorch_version()},
-                       {"device", name_of(device)},
-                       {"blas", blas.library},
-                       {"blas_core", blas.core},
-                       {"blas_config", blas.config}};
-  write_file(directory.root() / "learner.json", record.dump(2) + "\n");
+}
+
+void print_versions() {
+  const learner::Blas blas = learner::blas_in_use();
+  const LearnerVersions versions{learner::libtorch_version(), blas.core, blas.config};
+  fmt::print("{}\n", json_of(versions).dump());
 }
 
 int run(const std::string& root) {
@@ -47,13 +46,14 @@ int run(const std::string& root) {
   const RunConfig config = load_run_config(directory.config());
   const std::string run_id = read_manifest(directory).run_id;
   learner::check_device(config.run.device);
-  record_libraries(directory, config.run.device);
+  log_libraries(config.run.device);
 
   learner::LearnerState state = learner::load_state(config, directory);
   MetricsWriter metrics(directory.metrics(kLearnerName));
-  Server server(addresses(config.run, run_id).learner, run_id);
+  Server server(addresses(config.run, run_id, root).learner, run_id);
   learner::Publisher publisher(server, static_cast<std::size_t>(config.run.actors));
-  Client client = connect_to_replay(config.run, {run_id, Role::kLearner, 0, draw_incarnation()});
+  Client client =
+      connect_to_replay(config.run, {run_id, Role::kLearner, 0, draw_incarnation()}, root);
   TimeAccount time;
   learner::ReplayClient replay(client, time, [&] { publisher.service(Duration::zero()); });
   learner::Training training(config,
@@ -75,9 +75,13 @@ int main(int argc, char** argv) {
   learner::use_portable_kernels(argv);
   CLI::App app("The learner of a corridor run; `corridor` starts it.");
   std::string root;
-  app.add_option("RUN_DIRECTORY", root, "the run, as `corridor train` made it")->required();
+  bool versions = false;
+  auto* const asked = app.add_flag(kVersionsOption, versions, "print what the bits depend on");
+  app.add_option("RUN_DIRECTORY", root, "the run, as `corridor train` made it")->excludes(asked);
   return run_program(kLearnerProgram, [&] {
-    const auto done = parse_command_line(app, kLearnerProgram, argc, argv);
-    return done ? *done : run(root);
+    if (const auto done = parse_command_line(app, kLearnerProgram, argc, argv)) return *done;
+    if (!versions) return run(root);
+    print_versions();
+    return 0;
   });
 }

@@ -170,7 +170,7 @@ std::optional<Opened> Training::await_block(std::uint64_t round) {
 }
 
 Training::BlockResult Training::train_block(std::uint64_t round, const Opened& opened) {
-  const double progress = schedule_.phase_progress(round);
+  const double progress = schedule_.annealed(round);
   const double learning_rate = between(dqn().learning_rate, dqn().learning_rate_end, progress);
   const Block block{opened.batches, static_cast<std::uint32_t>(dqn().batch_size),
                     between(dqn().importance_exponent, dqn().importance_exponent_end, progress)};
@@ -253,8 +253,8 @@ void Training::report(std::uint64_t round, const Opened& opened, const BlockResu
   std::vector<std::pair<std::string, double>> values = {
       {metric::kStepsPerS, static_cast<double>(steps_since_report_) / around_.time.wall_s()},
       {metric::kUpdates, static_cast<double>(result.updates)},
-      {metric::kLearningRate, between(settings.learning_rate, settings.learning_rate_end,
-                                      schedule_.phase_progress(round))}};
+      {metric::kLearningRate,
+       between(settings.learning_rate, settings.learning_rate_end, schedule_.annealed(round))}};
   for (auto& value : around_.time.take()) values.push_back(std::move(value));
   if (opened.batches > 0) {
     values.emplace_back(metric::kTdLoss, result.loss);

@@ -29,7 +29,7 @@ int run(const std::string& root) {
     log_info("resumes from {}, at round {}", checkpoint->string(), service.next_round());
   }
   MetricsWriter metrics(directory.metrics(kReplayName));
-  Server server(addresses(config.run, run_id).replay, run_id);
+  Server server(addresses(config.run, run_id, root).replay, run_id);
   replay::serve(server, service, metrics, config, {stop_requested, test_delay()});
   log_info("ends at round {}; {} messages dropped", service.next_round(), server.dropped());
   return 0;

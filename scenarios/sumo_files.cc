@@ -44,12 +44,13 @@ std::string complaint(const std::string& output) {
 void run_netconvert(const fs::path& directory, std::chrono::milliseconds patience) {
   const fs::path edges = directory / "road.edg.xml";
   const fs::path network = directory / kSumoNetworkFile;
-  // Four decimals of a metre: two would move lanes whose width is no multiple of a centimetre.
-  const auto result =
-      run_subprocess(find_netconvert(),
-                     {"--node-files", directory / "road.nod.xml", "--edge-files", edges,
-                      "--output-file", network, "--precision", "4", "--xml-validation", "never"},
-                     /*input=*/"", patience);
+  // By bare names: netconvert reads more than a name into some paths. Four decimals of a metre: two
+  // would move lanes whose width is no multiple of a centimetre.
+  const auto result = run_subprocess(
+      find_netconvert(),
+      {"--node-files", "road.nod.xml", "--edge-files", "road.edg.xml", "--output-file",
+       kSumoNetworkFile, "--precision", "4", "--xml-validation", "never"},
+      /*input=*/"", patience, directory);
   if (!result) {
     throw Failure("netconvert has not made {} within {} ms and was stopped", network.string(),
                   patience.count());

@@ -14,6 +14,7 @@
 #include "proto/base/random.h"
 #include "proto/settings/collision_kinds.h"
 #include "proto/settings/sumo_names.h"
+#include "proto/system/files.h"
 
 namespace corridor::world {
 namespace {
@@ -38,10 +39,21 @@ std::atomic<bool> world_exists = false;
 
 std::string sumo_id(int id) { return fmt::format("v{}", id); }
 
-void require_file(const std::filesystem::path& file) {
-  if (!std::filesystem::is_regular_file(file)) {
-    throw Failure("no file {} for SUMO: the run directory is incomplete", file.string());
+// The folder of a file that is there.
+std::filesystem::path folder_of(const std::filesystem::path& file) {
+  if (std::filesystem::is_regular_file(file)) return parent_of(file);
+  throw Failure("no file {} for SUMO: the run directory is incomplete", file.string());
+}
+
+// SUMO does not look whether what it writes gets to the disk.
+void check_complete(const std::filesystem::path& fcd_output) {
+  constexpr std::string_view kEnd = "</fcd-export>";
+  const std::string content = read_file(fcd_output);
+  if (content.find(kEnd, content.size() - std::min<std::size_t>(content.size(), 100)) !=
+      std::string::npos) {
+    return;
   }
+  throw Failure("SUMO could not write all of {}: is the disk full?", fcd_output.string());
 }
 
 void obey_trajectories(const std::string& id) {
@@ -66,10 +78,10 @@ SumoWorld::SumoWorld(const WorldSettings& settings, std::filesystem::path networ
     : settings_(settings),
       network_(std::move(network)),
       vehicle_types_(std::move(vehicle_types)),
+      network_folder_(folder_of(network_)),
+      vehicle_types_folder_(folder_of(vehicle_types_)),
       time_(time),
       motion_(make_ego_motion(settings.dynamics, settings.road, settings.ego)) {
-  require_file(network_);
-  require_file(vehicle_types_);
   CORRIDOR_CHECK(!world_exists.exchange(true), "libsumo holds one simulation a process");
   // SUMO starts its XML parser for each load and ends it again, which is half of a load's cost.
   // Starts are counted: with one more the parser stays.
@@ -85,6 +97,8 @@ SumoWorld::~SumoWorld() {
 driving::Scene SumoWorld::begin(const EpisodeStart& start) {
   time_.charge(TimePart::kPlan);
   end();
+  fcd_output_ = start.fcd_output;
+  if (!fcd_output_.empty()) fcd_folder_.emplace(parent_of(fcd_output_));
   in_sumo(fmt::format("loading {} and {}", network_.string(), vehicle_types_.string()),
           [&] { Sumo::load(options(start)); });
   running_ = true;
@@ -218,6 +232,7 @@ void SumoWorld::simulate() {
 void SumoWorld::end() {
   if (!std::exchange(running_, false)) return;
   in_sumo("ending an episode", [] { Sumo::close(); });
+  if (!fcd_output_.empty()) check_complete(std::exchange(fcd_output_, {}));
 }
 
 // moveToXY, which alone knows of a place across the lane, is carried out at the end of the next
@@ -308,17 +323,18 @@ void SumoWorld::add_ego(const driving::Ego& ego, EgoDriver driver) {
 std::vector<std::string> SumoWorld::options(const EpisodeStart& start) const {
   const std::uint64_t seed = random_bits(start.seed, Purpose::kSumo, {}) >> 33;
   std::vector<std::string> result = {
-      "--net-file", network_.string(), "--route-files", vehicle_types_.string(), "--seed",
-      fmt::format("{}", seed), "--step-length", fmt::format("{}", settings_.simulation.substep_s()),
-      "--lateral-resolution", fmt::format("{}", settings_.simulation.lateral_resolution_m),
-      "--time-to-teleport", "-1",
+      "--net-file", network_folder_.path() / network_.filename(), "--route-files",
+      vehicle_types_folder_.path() / vehicle_types_.filename(), "--seed", fmt::format("{}", seed),
+      "--step-length", fmt::format("{}", settings_.simulation.substep_s()), "--lateral-resolution",
+      fmt::format("{}", settings_.simulation.lateral_resolution_m), "--time-to-teleport", "-1",
       // Collisions are ours to find (actor/driving/collision.h).
       "--collision.action", "none", "--collision.mingap-factor", "0", "--no-step-log",
       "--no-warnings", "--duration-log.disable", "--xml-validation", "never"};
   if (!start.fcd_output.empty()) {
-    result.insert(result.end(),
-                  {"--fcd-output", start.fcd_output.string(), "--fcd-output.attributes",
-                   "x,y,angle,type,speed,acceleration,pos,lane,posLat", "--precision", "4"});
+    result.insert(
+        result.end(),
+        {"--fcd-output", fcd_folder_->path() / fcd_output_.filename(), "--fcd-output.attributes",
+         "x,y,angle,type,speed,acceleration,pos,lane,posLat", "--precision", "4"});
   }
   return result;
 }

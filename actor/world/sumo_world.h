@@ -17,6 +17,7 @@
 #include "actor/world/traffic.h"
 #include "actor/world/world.h"
 #include "proto/settings/settings.h"
+#include "proto/system/files.h"
 #include "proto/system/time_account.h"
 
 namespace corridor::world {
@@ -49,6 +50,7 @@ class SumoWorld : public World {
   StepResult step(const driving::Trajectory& trajectory) override;
   StepResult step_by_world() override;
   driving::Scene take_over() override;
+  // Throws Failure when SUMO could not write all of the episode's trajectories.
   void end() override;
 
  private:
@@ -67,10 +69,15 @@ class SumoWorld : public World {
   WorldSettings settings_;
   std::filesystem::path network_;
   std::filesystem::path vehicle_types_;
+  // As SUMO's options are given them.
+  PlainlyNamedFolder network_folder_;
+  PlainlyNamedFolder vehicle_types_folder_;
   TimeAccount& time_;
 
   // Of the episode in progress.
   bool running_ = false;
+  std::filesystem::path fcd_output_;  // empty: none
+  std::optional<PlainlyNamedFolder> fcd_folder_;
   EgoDriver driver_ = EgoDriver::kPlanner;
   std::uint64_t seed_ = 0;
   std::function<void(const driving::Scene&)> watch_;

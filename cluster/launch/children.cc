@@ -17,12 +17,26 @@
 #include "proto/base/failure.h"
 #include "proto/system/descriptor.h"
 #include "proto/system/identity.h"
+#include "proto/system/program.h"
 #include "proto/system/subprocess.h"
 
 namespace corridor::cluster {
 namespace {
 
 constexpr int kFailureStatus = 1;  // proto/system/program.h
+
+// What counts of the time between two looks at a child: if it is more, it is we who were stopped.
+constexpr std::chrono::seconds kLookedAway{1};
+// The bounds of a process that has been killed for its silence grow: it may only be slow.
+constexpr int kDoublingsMax = 3;
+
+// Since `before`: what of `passed` a process was not waiting for a processor that others had.
+TimePoint::duration idle_time(const ProcessorTime& before, const ProcessorTime& now,
+                              TimePoint::duration passed) {
+  // The system counts a wait when it is over.
+  if (now.runnable && now.had == before.had) return {};
+  return std::max(passed - (now.waited - before.waited), TimePoint::duration::zero());
+}
 
 std::vector<std::string> environment_of(const Pulse& pulse, std::uint32_t starts) {
   // The processes share the cores already: threads of their own would only get in each other's way.
@@ -44,6 +58,8 @@ std::vector<std::string> environment_of(const Pulse& pulse, std::uint32_t starts
   // A run can be resumed after anything: nothing need be asked of those whose starter died.
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent) _exit(1);  // it died before prctl
+  // Its starter alone is asked for a checkpoint; the rest is as a shell would start it.
+  for (const int stop : kStopSignals) signal(stop, stop == SIGUSR1 ? SIG_IGN : SIG_DFL);
   sigset_t none;
   sigemptyset(&none);
   sigprocmask(SIG_SETMASK, &none, nullptr);
@@ -100,8 +116,16 @@ void Children::start(const ProcessPlan& plan, std::chrono::milliseconds patience
   told.close();
   if (pid > 0) {
     setpgid(pid, pid);  // here as well: whoever comes first
-    running_.push_back({plan.name, plan.log, static_cast<std::uintmax_t>(log_start), pid,
-                        std::move(pulse), 0, std::nullopt, false});
+    running_.push_back({plan.name,
+                        plan.log,
+                        static_cast<std::uintmax_t>(log_start),
+                        pid,
+                        std::move(pulse),
+                        0,
+                        {},
+                        std::nullopt,
+                        {},
+                        std::nullopt});
     pollfd said{errors.get(), POLLIN, 0};
     const bool over = poll(&said, 1, static_cast<int>(patience.count())) > 0;
     if (over && read(errors.get(), &error, sizeof error) < 0) error = errno;
@@ -119,7 +143,7 @@ std::optional<Ended> Children::reap() {
     if (waitid(P_PID, id, &info, WEXITED | WNOHANG | WNOWAIT) != 0 || info.si_pid == 0) continue;
     // Before the process is reaped: its id cannot have been given to another group yet.
     kill(-child->pid, SIGKILL);
-    Ended ended{child->name, child->log, child->log_start, 0, child->hung};
+    Ended ended{child->name, child->log, child->log_start, 0, child->hung_s};
     waitpid(child->pid, &ended.status, WNOHANG);
     running_.erase(child);
     return ended;
@@ -133,12 +157,20 @@ void Children::signal(int signal, const std::string& only) {
   }
 }
 
-void Children::kill_hung(std::chrono::milliseconds silence, TimePoint now) {
+void Children::kill_hung(const Silence& limits, TimePoint now) {
   for (Child& child : running_) {
     const std::uint64_t beats = child.pulse.beats();
-    if (beats != std::exchange(child.beats, beats) || !child.alive_at) child.alive_at = now;
-    if (now - *child.alive_at < silence) continue;
-    child.hung = true;
+    const ProcessorTime time = processor_time_of(child.pid);
+    const ProcessorTime before = std::exchange(child.time, time);
+    const TimePoint::duration passed = now - child.looked_at.value_or(now);
+    child.looked_at = now;
+    if (beats != std::exchange(child.beats, beats)) child.silence = {};
+    child.silence += idle_time(before, time, std::min<TimePoint::duration>(passed, kLookedAway));
+    const int doublings = std::min(hangs_[child.name], kDoublingsMax);
+    const auto most = (beats == 0 ? limits.loading : limits.working) * (1 << doublings);
+    if (child.silence < most || child.hung_s) continue;
+    child.hung_s = in_seconds(child.silence);
+    ++hangs_[child.name];
     kill(-child.pid, SIGKILL);
   }
 }
@@ -163,8 +195,9 @@ bool Ended::knows_why() const { return WIFEXITED(status) && WEXITSTATUS(status) 
 
 std::string Ended::cause() const {
   std::string how;
-  if (hung) {
-    how = "was killed, since it hung";
+  if (hung_s) {
+    how = fmt::format("was killed, since it gave no sign of life for {:.0f} s (run.peer_timeout_s)",
+                      *hung_s);
   } else if (WIFSIGNALED(status)) {
     how = fmt::format("ended with signal {} ({})", WTERMSIG(status), strsignal(WTERMSIG(status)));
   } else {

@@ -9,11 +9,13 @@
 #include <cstdint>
 #include <filesystem>
 #include <list>
+#include <map>
 #include <optional>
 #include <string>
 
 #include "cluster/launch/plan.h"
 #include "proto/system/clock.h"
+#include "proto/system/processors.h"
 #include "proto/system/pulse.h"
 
 namespace corridor::cluster {
@@ -22,9 +24,9 @@ namespace corridor::cluster {
 struct Ended {
   std::string name;
   std::filesystem::path log;
-  std::uintmax_t log_start = 0;  // what is before is of earlier processes
-  int status = 0;                // as waitpid says
-  bool hung = false;             // it was killed for that
+  std::uintmax_t log_start = 0;       // what is before is of earlier processes
+  int status = 0;                     // as waitpid says
+  std::optional<double> hung_s = {};  // it was killed for so long a silence
 
   // With status 0.
   bool well() const;
@@ -32,6 +34,12 @@ struct Ended {
   bool knows_why() const;
   // "learner ended with signal 9 (Killed): <its last words>; log: <file>"
   std::string cause() const;
+};
+
+// How long a process may give no sign of life.
+struct Silence {
+  std::chrono::milliseconds working{20'000};
+  std::chrono::milliseconds loading{120'000};  // before the first one: libraries come from a disk
 };
 
 class Children {
@@ -51,8 +59,10 @@ class Children {
   // To all, or to one.
   void signal(int signal, const std::string& only = {});
   // Those that have given no sign of life (proto/system/pulse.h) for so long, by the calls of this
-  // function, which are to come far more often. `now` never steps back.
-  void kill_hung(std::chrono::milliseconds silence, TimePoint now);
+  // function, which are to come several times a second. What a process waits for a processor that
+  // others have does not count, nor what this process was stopped. The limits of one that was
+  // killed so are doubled each time. `now` never steps back.
+  void kill_hung(const Silence& limits, TimePoint now);
   // At its return none is left.
   void kill_all();
 
@@ -66,12 +76,16 @@ class Children {
     std::uintmax_t log_start = 0;
     pid_t pid = 0;  // of the process and its group
     Pulse pulse;
-    std::uint64_t beats = 0;            // when last looked at
-    std::optional<TimePoint> alive_at;  // when they were last more than before
-    bool hung = false;
+    // When last looked at.
+    std::uint64_t beats = 0;
+    ProcessorTime time;
+    std::optional<TimePoint> looked_at;
+    TimePoint::duration silence{0};
+    std::optional<double> hung_s;
   };
   std::uint32_t starts_ = 0;
   std::list<Child> running_;
+  std::map<std::string, int> hangs_;  // of each name
 };
 
 }  // namespace corridor::cluster

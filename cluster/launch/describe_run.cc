@@ -2,18 +2,20 @@
 #include "cluster/launch/describe_run.h"
 
 #include <array>
-#include <cstdio>
+#include <chrono>
+#include <cstring>
 #include <ctime>
 #include <fstream>
-#include <memory>
-#include <span>
 #include <thread>
 
-#include "proto/base/format.h"
+#include "cluster/launch/plan.h"
+#include "proto/base/failure.h"
+#include "proto/base/json.h"
 #include "proto/config/run_config.h"
 #include "proto/run/run_directory.h"
 #include "proto/system/identity.h"
 #include "proto/system/program.h"
+#include "proto/system/subprocess.h"
 
 namespace corridor::cluster {
 namespace {
@@ -39,17 +41,28 @@ std::string cpu_model() {
   return kUnknown;
 }
 
+constexpr std::chrono::seconds kPatience{60};
+
 // "Eclipse SUMO netconvert Version 1.15.0": the tool that has just made the network.
 std::string sumo_version() {
-  const std::unique_ptr<FILE, int (*)(FILE*)> pipe(popen("netconvert --version 2>/dev/null", "re"),
-                                                   pclose);
-  std::array<char, 256> line{};
-  if (!pipe || std::fgets(line.data(), line.size(), pipe.get()) == nullptr) return kUnknown;
-  const std::string text = line.data();
-  const std::size_t at = text.rfind("Version ");
+  const auto netconvert = find_program("netconvert");
+  if (!netconvert) return kUnknown;
+  const auto said = run_subprocess(*netconvert, {"--version"}, "", kPatience);
+  const std::string text = said ? said->output : "";
+  const std::size_t at = text.find("Version ");
   if (at == std::string::npos) return kUnknown;
   const std::size_t start = at + std::strlen("Version ");
   return text.substr(start, text.find_first_of(" \n", start) - start);
+}
+
+LearnerVersions learner_versions() {
+  const std::string program = program_path(kLearnerProgram);
+  const auto said = run_subprocess(program, {kVersionsOption}, "", kPatience);
+  if (!said || said->status != 0) {
+    throw Failure("{} does not say its versions: {}; is the build complete?", program,
+                  said ? said->errors.substr(0, said->errors.find('\n')) : "it hangs");
+  }
+  return parse_record<LearnerVersions>(parse_json(said->output, program), program, "its versions");
 }
 
 // Which library Debian's alternatives have the learner load.
@@ -65,8 +78,15 @@ std::string draw_run_id() {
   return fmt::format("{:016x}{:016x}", random_64_bits(), random_64_bits());
 }
 
+RunVersions versions_here() {
+  const LearnerVersions learner = learner_versions();
+  return {kVersion,       CORRIDOR_GIT_COMMIT, sumo_version(),    learner.libtorch,
+          blas_library(), CORRIDOR_COMPILER,   learner.blas_core, learner.blas_config};
+}
+
 RunManifest describe_run(const std::string& run_id, std::uint64_t seed,
-                         const std::filesystem::path& scenario, const std::string& config_toml) {
+                         const std::filesystem::path& scenario, const std::string& config_toml,
+                         const RunVersions& versions) {
   RunManifest manifest;
   manifest.run_id = run_id;
   manifest.seed = seed;
@@ -75,8 +95,7 @@ RunManifest describe_run(const std::string& run_id, std::uint64_t seed,
   manifest.host = host_name();
   manifest.cpu = cpu_model();
   manifest.cores = std::thread::hardware_concurrency();
-  manifest.versions = {kVersion,       CORRIDOR_GIT_COMMIT, sumo_version(), CORRIDOR_TORCH_VERSION,
-                       blas_library(), CORRIDOR_COMPILER};
+  manifest.versions = versions;
   manifest.config = config_toml;
   return manifest;
 }

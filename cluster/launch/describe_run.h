@@ -15,9 +15,14 @@ namespace corridor::cluster {
 // 32 hex digits from the system's generator: who knows them belongs to the run.
 std::string draw_run_id();
 
+// What is installed here. Asks netconvert and the learner. Throws Failure when the learner cannot
+// be started.
+RunVersions versions_here();
+
 // Of a run that begins now, here.
 RunManifest describe_run(const std::string& run_id, std::uint64_t seed,
-                         const std::filesystem::path& scenario, const std::string& config_toml);
+                         const std::filesystem::path& scenario, const std::string& config_toml,
+                         const RunVersions& versions);
 
 // The settings with which the run began, whatever its config.toml says now. Throws Failure.
 RunConfig config_at_start(const RunDirectory& directory);

@@ -40,8 +40,8 @@ Owner read_owner(int descriptor) {
 
 }  // namespace
 
-Descriptor lock_run(const RunDirectory& directory, std::chrono::milliseconds patience) {
-  const std::filesystem::path file = directory.root() / "lock";
+Descriptor lock_folder(const std::filesystem::path& folder, std::chrono::milliseconds patience) {
+  const std::filesystem::path file = folder / "lock";
   // Not close-on-exec: the run's processes are to hold it too.
   Descriptor lock(open(file.c_str(), O_RDWR | O_CREAT, 0644));
   if (!lock.valid()) throw Failure("cannot open {}: {}", file.string(), std::strerror(errno));
@@ -52,8 +52,8 @@ Descriptor lock_run(const RunDirectory& directory, std::chrono::milliseconds pat
       poll(nullptr, 0, 50);
       continue;
     }
-    throw Failure("{} is going on: process {} on {} runs it{}", directory.root().string(),
-                  owner.pid, owner.host,
+    throw Failure("{} is going on: process {} on {} runs it{}", folder.string(), owner.pid,
+                  owner.host,
                   owner.gone() ? " (it is gone, but processes that it started still live)" : "");
   }
   const std::string text = fmt::format("{} {}\n", getpid(), host_name());

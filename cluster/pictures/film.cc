@@ -4,11 +4,12 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <fstream>
 
 #include "cluster/pictures/road_view.h"
 #include "proto/base/failure.h"
 #include "proto/base/text.h"
+#include "proto/system/files.h"
+#include "proto/system/program.h"
 #include "proto/system/subprocess.h"
 
 namespace corridor::cluster {
@@ -120,45 +121,24 @@ std::string speed_text(const TracedScene& scene, const Leader& leader, const Tra
   return text;
 }
 
-// The frames as pictures (PNG) one after the other, in a file beside the film; gone with it.
-class FrameFile {
- public:
-  explicit FrameFile(const fs::path& film) : path_(film.string() + ".frames"), out_(path_) {}
-  ~FrameFile() {
-    std::error_code ignored;
-    fs::remove(path_, ignored);
-  }
-  FrameFile(const FrameFile&) = delete;
-  FrameFile& operator=(const FrameFile&) = delete;
-
-  void add(const std::string& png) {
-    out_ << png << std::flush;
-    if (!out_) throw Failure("cannot write {}: is the disk full?", path_.string());
-  }
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-  std::ofstream out_;
-};
-
-void encode(const fs::path& ffmpeg, const fs::path& frames, const fs::path& film) {
+// Pictures (PNG) one after the other -> the film (MP4).
+std::string encoded(const fs::path& ffmpeg, const UnnamedFile& frames) {
+  const UnnamedFile film;  // where ffmpeg can go back and write the index to the front
   const auto done =
-      run_subprocess(ffmpeg, {"-y",         "-loglevel",     "error",
-                              "-f",         "image2pipe",    "-c:v",
-                              "png",        "-framerate",    std::to_string(kFramesPerSecond),
-                              "-i",         frames.string(), "-c:v",
-                              "libx264",    "-crf",          "20",
-                              "-pix_fmt",   "yuv420p",       "-movflags",
-                              "+faststart", film.string()},
+      run_subprocess(ffmpeg, {"-y",         "-loglevel",   "error",
+                              "-f",         "image2pipe",  "-c:v",
+                              "png",        "-framerate",  std::to_string(kFramesPerSecond),
+                              "-i",         frames.path(), "-c:v",
+                              "libx264",    "-crf",        "20",
+                              "-pix_fmt",   "yuv420p",     "-movflags",
+                              "+faststart", "-f",          "mp4",
+                              film.path()},
                      "", kPatience);
-  if (!done) {
-    throw Failure("ffmpeg did not write {} within {} min", film.string(), kPatience.count());
-  }
+  if (!done) throw Failure("ffmpeg was not done within {} min", kPatience.count());
   if (done->status != 0) {
-    throw Failure("ffmpeg cannot write {}: {}", film.string(),
-                  done->errors.substr(0, done->errors.find('\n')));
+    throw Failure("ffmpeg cannot make a film: {}", done->errors.substr(0, done->errors.find('\n')));
   }
+  return film.content();
 }
 
 }  // namespace
@@ -219,23 +199,29 @@ Canvas Frames::at(double time_s) const {
   return canvas;
 }
 
+std::filesystem::path find_ffmpeg() {
+  if (const auto program = find_program("ffmpeg")) return *program;
+  throw Failure(
+      "ffmpeg is not installed, and it makes the film: install ffmpeg, or ask for --no-film");
+}
+
 void write_film(const std::vector<Clip>& clips, const fs::path& file,
                 const std::function<void(double)>& progress) {
-  const auto ffmpeg = find_program("ffmpeg");
-  if (!ffmpeg) throw Failure("no ffmpeg: films need it (cluster/setup installs it)");
+  const fs::path ffmpeg = find_ffmpeg();
   double all_s = 0.0;
   for (const Clip& clip : clips) all_s += clip.duration_s();
-  FrameFile pictures(file);
+  UnnamedFile pictures;
   int drawn = 0;
   for (const Clip& clip : clips) {
     const Frames frames(clip);
     const int count = static_cast<int>(clip.duration_s() * kFramesPerSecond + 1e-9);
     for (int i = 0; i <= count; ++i) {
-      pictures.add(frames.at(static_cast<double>(i) / kFramesPerSecond).png());
+      throw_if_stopped();
+      pictures.append(frames.at(static_cast<double>(i) / kFramesPerSecond).png());
       progress(std::min(1.0, ++drawn / (all_s * kFramesPerSecond + 1.0)));
     }
   }
-  encode(*ffmpeg, pictures.path(), file);
+  write_file(file, encoded(ffmpeg, pictures));
 }
 
 }  // namespace corridor::cluster

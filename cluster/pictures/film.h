@@ -29,8 +29,12 @@ class Frames {
   CurveValues speed_mps_, leader_mps_, gap_m_, d_m_;  // every tenth of a second
 };
 
+// The program that makes films. Throws Failure when there is none.
+std::filesystem::path find_ffmpeg();
+
 // All clips, one after the other, as fast as they were driven (MP4, H.264). `progress` hears the
-// share done. Throws Failure when there is no ffmpeg, when it fails, or when the disk is full.
+// share done. Throws Failure when there is no ffmpeg, when it fails, or when the disk is full, and
+// Stopped when a signal asks this process to end; there is no film then.
 void write_film(const std::vector<Clip>& clips, const std::filesystem::path& file,
                 const std::function<void(double share)>& progress);
 

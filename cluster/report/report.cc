@@ -8,6 +8,7 @@
 #include "cluster/report/report_page.h"
 #include "cluster/report/training_figures.h"
 #include "proto/base/failure.h"
+#include "proto/run/manifest.h"
 #include "proto/run/run_directory.h"
 #include "proto/system/files.h"
 
@@ -16,11 +17,26 @@ namespace {
 
 constexpr double kPrintScale = 2.0;
 
+// Made where it is missing. A page that is there is replaced if it is an earlier report.
+std::filesystem::path report_folder(const ReportOptions& options) {
+  std::filesystem::path out =
+      options.out.empty() ? open_results(options.runs.front()).root() / "report" : options.out;
+  create_folders(out);
+  const std::filesystem::path page = out / "report.html";
+  if (!options.out.empty() && std::filesystem::exists(page) &&
+      read_file(page).find(kGenerator) == std::string::npos) {
+    throw Failure("{} is no report of corridor, and would be replaced: choose another --out",
+                  page.string());
+  }
+  return out;
+}
+
 }  // namespace
 
 int report(const ReportOptions& options) {
+  const std::filesystem::path out = report_folder(options);
   std::vector<RunRecord> runs;
-  for (const auto& root : options.runs) runs.push_back(read_run(root));
+  for (const auto& root : options.runs) runs.push_back(read_run(open_results(root).root()));
   const std::vector<RunGroup> groups = grouped_runs(std::move(runs));
 
   std::vector<DrawnFigure> training, episodes;
@@ -37,17 +53,15 @@ int report(const ReportOptions& options) {
   }
   const std::string page = report_page(groups, training, episodes);
 
-  const std::filesystem::path out =
-      options.out.empty() ? options.runs.front() / "report" : options.out;
-  create_folders(out);
+  const std::filesystem::path page_file = out / "report.html";
   for (const auto* figures : {&training, &episodes}) {
     for (const DrawnFigure& drawn : *figures) {
       write_file(out / (drawn.name + ".svg"), drawn.svg);
       write_file(out / (drawn.name + ".png"), drawn.png);
     }
   }
-  write_file(out / "report.html", page);
-  fmt::print("{}, with {} figures as SVG and PNG beside it\n", (out / "report.html").string(),
+  write_file(page_file, page);
+  fmt::print("{}, with {} figures as SVG and PNG beside it\n", page_file.string(),
              training.size() + episodes.size());
   for (const std::string& note : driven.notes) fmt::print("{}\n", note);
   return 0;

@@ -2,12 +2,11 @@
 #include "cluster/report/report_page.h"
 
 #include <algorithm>
-#include <cctype>
 #include <map>
 #include <tuple>
 
 #include "cluster/results/results_tables.h"
-#include "proto/base/format.h"
+#include "proto/base/failure.h"
 #include "proto/base/text.h"
 #include "proto/config/config_values.h"
 #include "proto/settings/schedule.h"
@@ -104,19 +103,13 @@ std::string evaluation_tables(const RunGroup& group) {
   for (const auto& [world, results] : by_world) {
     html += element(
         "h3", world.empty() ? group.label : fmt::format("{}, driving in {}", group.label, world));
+    const auto driven = std::ranges::find_if(
+        group.runs, [&](const RunRecord& run) { return run.worlds.contains(world); });
+    CORRIDOR_CHECK(driven != group.runs.end(), "{}", world);
+    html += element("p", world_text(driven->worlds.at(world)));
     for (const Table& table : results_tables(arms_of(results))) html += html_of(table);
   }
   return html;
-}
-
-// As one word of a shell.
-std::string shell_word(const std::string& text) {
-  const auto plain = [](unsigned char c) {
-    return std::isalnum(c) ||
-           std::string_view("/._-+,=:").find(static_cast<char>(c)) != std::string_view::npos;
-  };
-  if (!text.empty() && std::ranges::all_of(text, plain)) return text;
-  return "'" + replaced(text, '\'', "'\\''") + "'";
 }
 
 // One command for all planners of equal steps and seeds.
@@ -151,20 +144,20 @@ std::string differences(const RunConfig& first, const RunConfig& other) {
 }  // namespace
 
 std::string repeating_commands(const RunRecord& run) {
-  const std::string again = shell_word(
+  const std::string again = shell_quoted(
       (run.root.filename().empty() ? run.root.parent_path() : run.root).filename().string() +
       "-again");
   std::string text = fmt::format("corridor train {} --run {}\n",
-                                 shell_word((run.root / "config.toml").string()), again);
+                                 shell_quoted((run.root / "config.toml").string()), again);
   if (run.fingerprint && run.rounds_done >= Schedule(run.config).rounds()) {
     text += fmt::format("corridor fingerprint {}    # {}\n", again, *run.fingerprint);
   }
   for (const auto& [world, results] : run.evaluations) {
     std::string scenario;
     if (!world.empty()) {
-      const std::string file = shell_word(world + ".toml");
-      text += fmt::format("cp {} {}\n", shell_word((run.driven_in(world) / "config.toml").string()),
-                          file);
+      const std::string file = shell_quoted(world + ".toml");
+      text += fmt::format("cp {} {}\n",
+                          shell_quoted((run.driven_in(world) / "config.toml").string()), file);
       scenario = " --scenario " + file;
     }
     text += evaluate_commands(results, again, scenario);
@@ -215,10 +208,10 @@ std::string report_page(const std::vector<RunGroup>& groups,
   }
   return fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n{3}\n"
       "<title>{0}</title>\n<style>{1}</style>\n</head>\n<body>\n<h1>{0}</h1>\n{2}</body>\n"
       "</html>\n",
-      html_escaped("corridor: " + listed(labels)), kStyle, body);
+      html_escaped("corridor: " + listed(labels)), kStyle, body, kGenerator);
 }
 
 }  // namespace corridor::cluster

@@ -15,6 +15,9 @@ struct DrawnFigure {
   std::string svg, png;
 };
 
+// By which a page is known for one of ours.
+inline constexpr const char* kGenerator = "<meta name=\"generator\" content=\"corridor\">";
+
 // Runs with versions and fingerprints; the figures of their training; the tables of each training
 // in each world; single episodes; the commands that repeat it all, for a shell; the settings.
 std::string report_page(const std::vector<RunGroup>& groups,

@@ -60,7 +60,8 @@ RunRecord read_run(const std::filesystem::path& root) {
     run.actors.push_back(read_metrics(directory, actor_name(i)));
   }
   run.learner.push_back(read_metrics(directory, kLearnerName));
-  if (std::ranges::all_of(run.actors, &ProcessMetrics::empty)) {
+  const bool may_have_results_only = manifest.trained || manifest.fingerprint;
+  if (!may_have_results_only && std::ranges::all_of(run.actors, &ProcessMetrics::empty)) {
     throw Failure("{} has no metrics of its actors yet: nothing was trained, or it has only begun",
                   root.string());
   }
@@ -80,8 +81,8 @@ RunRecord read_run(const std::filesystem::path& root) {
     auto results = read_evaluations(place / "evaluation");
     if (results.empty()) continue;
     run.evaluations[world] = std::move(results);
-    if (differ_in_seed_only(run.config, load_run_config(place / "config.toml")))
-      run.worlds_of_training.insert(world);
+    run.worlds[world] = load_run_config(place / "config.toml");
+    if (differ_in_seed_only(run.config, run.worlds[world])) run.worlds_of_training.insert(world);
   }
   return run;
 }

@@ -29,6 +29,7 @@ struct RunRecord {
   std::vector<ProcessMetrics> learner;  // one file
   // By the world that was driven in: its own has the name "", others that of their scenario.
   std::map<std::string, std::vector<EvaluationRecord>> evaluations;
+  std::map<std::string, RunConfig> worlds;  // their settings
   // Those of these worlds that are as in training: "", and scenarios with the same settings.
   std::set<std::string> worlds_of_training;
 

@@ -165,6 +165,26 @@ std::vector<Table> results_tables(const std::vector<Arm>& arms) {
   return tables;
 }
 
+std::string world_text(const RunConfig& config) {
+  const TrafficSettings& traffic = config.traffic;
+  const SimulationSettings& simulation = config.simulation;
+  std::string text = fmt::format("{} to {} vehicles within {:g} m of the ego", traffic.vehicles_min,
+                                 traffic.vehicles_max, traffic.window_m);
+  text += traffic.blind_rate_per_s > 0.0
+              ? fmt::format("; {:g} a second move into its lane without looking",
+                            traffic.blind_rate_per_s)
+              : std::string("; all of them look before they move over");
+  if (traffic.objects_per_km > 0.0) {
+    text += fmt::format("; {:g} objects per km at a lane's edge", traffic.objects_per_km);
+  }
+  if (config.dynamics.world != WorldKind::kKinematic) {
+    text += fmt::format("; dynamics.world = \"{}\"", name_of(config.dynamics.world));
+  }
+  text += fmt::format(". A step is {:g} s, collisions are looked for every {:g} s.",
+                      simulation.step_s, simulation.substep_s());
+  return text;
+}
+
 Table paper_table() {
   Table table{"The paper's Table I, for comparison",
               {"planner", "BP reward", "collisions", "lane changes", "km/h"},

@@ -2,11 +2,13 @@
 // What evaluations came to -> tables. Pure.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "cluster/results/results.h"
 #include "cluster/results/table.h"
 #include "proto/run/hindsight_record.h"
+#include "proto/settings/settings.h"
 
 namespace corridor::cluster {
 
@@ -14,6 +16,9 @@ namespace corridor::cluster {
 // seeds; ratios to rules and to sumo where they are among the arms, with the ratios of the paper's
 // Table I as last row.
 std::vector<Table> results_tables(const std::vector<Arm>& arms);
+
+// What a table is about, in a sentence: traffic, blind drivers, the ego's motion, the step.
+std::string world_text(const RunConfig& config);
 
 // The paper's Table I.
 Table paper_table();

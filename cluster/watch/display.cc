@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <string_view>
 
 #include "proto/base/format.h"
 #include "proto/base/text.h"
@@ -20,6 +22,15 @@ int terminal_columns(std::FILE* out) {
   winsize size{};
   return ioctl(fileno(out), TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
 }
+
+// One that understands control sequences.
+bool is_terminal(std::FILE* out) {
+  const char* const kind = std::getenv("TERM");
+  return isatty(fileno(out)) == 1 && kind != nullptr && std::string_view(kind) != "dumb";
+}
+
+// A reader that has gone must not end what is shown: run_program says so at the end.
+void put(std::FILE* out, const std::string& text) { std::fputs(text.c_str(), out); }
 
 }  // namespace
 
@@ -37,19 +48,19 @@ std::string progress_line(const std::string& title, std::int64_t done, std::int6
   return text;
 }
 
-ProgressDisplay::ProgressDisplay(std::FILE* out) : out_(out), terminal_(isatty(fileno(out)) == 1) {}
+ProgressDisplay::ProgressDisplay(std::FILE* out) : out_(out), terminal_(is_terminal(out)) {}
 
 ProgressDisplay::~ProgressDisplay() { std::fflush(out_); }
 
 // Back to the first of the lines that stand there, and clear from there on.
 void ProgressDisplay::clear() {
-  if (shown_ > 0) fmt::print(out_, "\x1b[{}F\x1b[J", shown_);
+  if (shown_ > 0) put(out_, fmt::format("\x1b[{}F\x1b[J", shown_));
   shown_ = 0;
 }
 
 void ProgressDisplay::announce(const std::string& line) {
   clear();
-  fmt::print(out_, "{}\n", line);
+  put(out_, line + "\n");
   std::fflush(out_);
 }
 
@@ -61,7 +72,7 @@ void ProgressDisplay::show(const std::vector<std::string>& lines, double now_s) 
     // One that wrapped could not be counted.
     const std::size_t columns =
         terminal_ ? static_cast<std::size_t>(terminal_columns(out_) - 1) : line.size();
-    fmt::print(out_, "{}\n", line.substr(0, columns));
+    put(out_, line.substr(0, columns) + "\n");
   }
   if (terminal_) shown_ = lines.size();
   std::fflush(out_);

@@ -10,8 +10,9 @@
 
 namespace corridor::cluster {
 
-// On a terminal the lines are written over again, in a pipe or file they follow each other, every
-// ten seconds.
+// On a terminal the lines are written over again; in a pipe or file, and on a terminal that knows
+// no control sequences (TERM=dumb), they follow each other, every ten seconds. Nothing is thrown
+// where they cannot be written.
 class ProgressDisplay {
  public:
   // `out` outlives it.

@@ -8,8 +8,8 @@
 namespace corridor::cluster {
 
 StepProgress::StepProgress(std::string title, std::vector<StepTask> tasks, double now_s,
-                           std::string unit)
-    : title_(std::move(title)), unit_(std::move(unit)), start_s_(now_s) {
+                           std::string unit, std::FILE* out)
+    : title_(std::move(title)), unit_(std::move(unit)), start_s_(now_s), display_(out) {
   for (StepTask& task : tasks) {
     done_at_start_ += task.done;
     LineTail tail(task.file);

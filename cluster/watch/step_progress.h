@@ -27,9 +27,9 @@ struct StepTask {
 // Time comes from the caller.
 class StepProgress {
  public:
-  // `unit`: what is counted, if not steps.
+  // `unit`: what is counted, if not steps. `out` outlives it.
   StepProgress(std::string title, std::vector<StepTask> tasks, double now_s,
-               std::string unit = "steps");
+               std::string unit = "steps", std::FILE* out = stdout);
 
   // Reads what is new and shows it.
   void tick(double now_s);

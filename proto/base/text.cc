@@ -28,4 +28,11 @@ std::string replaced(const std::string& text, char from, std::string_view to) {
   return result;
 }
 
+std::string shell_quoted(const std::string& word) {
+  constexpr const char* kPlain =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_@%+=:,./-";
+  if (!word.empty() && word.find_first_not_of(kPlain) == std::string::npos) return word;
+  return fmt::format("'{}'", replaced(word, '\'', "'\\''"));
+}
+
 }  // namespace corridor

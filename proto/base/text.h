@@ -37,6 +37,9 @@ std::string listed(const List& values, std::string_view separator = ", ", Shown 
 // With `to` in place of each `from`.
 std::string replaced(const std::string& text, char from, std::string_view to);
 
+// As a shell takes it for one word: in single quotes where it needs them.
+std::string shell_quoted(const std::string& word);
+
 // The number that the whole text is; nothing when it is none, or one that T does not hold.
 template <typename T>
 std::optional<T> parse_number(std::string_view text) {

@@ -113,6 +113,9 @@ void describe_training(DqnSettings& dqn, Visitor& v) {
         dqn.averaging_updates, 0, 10'000'000);
   v.key({"learning_rate", "falls linearly over the phase"}, dqn.learning_rate, 1e-12, 1.0);
   v.key({"learning_rate_end"}, dqn.learning_rate_end, 0.0, 1.0);
+  v.key({"annealing_steps",
+         "of the phase, over which these and importance_exponent go to their ends; 0: all"},
+        dqn.annealing_steps, 0, kStepsMax);
   v.key({"adam_epsilon"}, dqn.adam_epsilon, 1e-15, 1.0);
   v.key({"huber_delta"}, dqn.huber_delta, 1e-6, 1e6);
   v.key({"gradient_norm_max"}, dqn.gradient_norm_max, 1e-6, 1e9);

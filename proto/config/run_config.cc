@@ -2,7 +2,9 @@
 #include "proto/config/run_config.h"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
+#include <optional>
 #include <set>
 #include <sstream>
 #include <string_view>
@@ -10,6 +12,7 @@
 
 #include "proto/base/failure.h"
 #include "proto/base/json.h"
+#include "proto/base/text.h"
 #include "proto/config/config_checks.h"
 #include "proto/config/config_keys.h"
 #include "proto/config/toml_library.h"
@@ -55,13 +58,13 @@ std::string written(const toml::value& value) {
       return Json(text_of(value)).dump(-1, ' ', false, Json::error_handler_t::replace);
     case toml::value_t::array:
       for (const toml::value& element : value.as_array()) parts.push_back(written(element));
-      return fmt::format("[{}]", fmt::join(parts, ", "));
+      return fmt::format("[{}]", listed(parts));
     case toml::value_t::table:
       for (const auto& [key, member] : value.as_table()) {
         parts.push_back(fmt::format("{} = {}", key, written(member)));
       }
       std::ranges::sort(parts);
-      return fmt::format("{{{}}}", fmt::join(parts, ", "));
+      return fmt::format("{{{}}}", listed(parts));
     default:  // dates and times
       return toml::format(value);
   }
@@ -100,6 +103,16 @@ std::string suggestion(const std::string& unknown, const std::vector<std::string
     return fmt::format("did you mean {}?", *nearest);
   }
   return "known are " + toml_of(known);
+}
+
+// Also 1e6, which TOML has no whole number for.
+std::optional<std::int64_t> whole(const toml::value& value) {
+  if (value.is_integer()) return value.as_integer();
+  constexpr double kExact = 9007199254740992.0;
+  if (!value.is_floating() || std::abs(value.as_floating()) > kExact) return std::nullopt;
+  const double number = value.as_floating();
+  if (number != std::trunc(number)) return std::nullopt;  // NaN is above nothing and equals nothing
+  return static_cast<std::int64_t>(number);
 }
 
 // In alphabetical order: the TOML library's is a hash's.
@@ -206,11 +219,12 @@ class Reader {
                     kWhole ? "a whole number" : "a number", low, high);
     if constexpr (kWhole) {
       // Compared as TOML's type, of which T may hold less, or no negative ones.
-      if (!element.is_integer() || element.as_integer() < static_cast<std::int64_t>(low) ||
-          element.as_integer() > static_cast<std::int64_t>(high)) {
+      const std::optional<std::int64_t> number = whole(element);
+      if (!number || *number < static_cast<std::int64_t>(low) ||
+          *number > static_cast<std::int64_t>(high)) {
         wrong(key, value, right);
       }
-      return static_cast<T>(element.as_integer());
+      return static_cast<T>(*number);
     } else {
       if (!element.is_floating() && !element.is_integer()) wrong(key, value, right);
       const double number =

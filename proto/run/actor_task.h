@@ -107,6 +107,7 @@ struct LookBackTask {
   std::string planner;
   std::uint64_t seed = 0;
   HindsightLimits limits;
+  std::optional<std::filesystem::path> evaluated = {};
 
   template <typename Self, typename Option>
   static void options(Self& self, Option option) {
@@ -114,6 +115,7 @@ struct LookBackTask {
     option("--seed", self.seed, "of the evaluation");
     option("--actions", self.limits.actions, "by the last so many actions");
     option("--attempts", self.limits.attempts_max, "at most, for each number of actions");
+    option("--evaluated", self.evaluated, "run directory whose evaluation it is, if not RUN");
   }
   bool operator==(const LookBackTask&) const = default;
 };

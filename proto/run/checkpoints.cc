@@ -19,6 +19,9 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kManifest = "manifest.json";
+// Follow a round's number in the names of what is no checkpoint yet, or no more.
+constexpr const char* kPartial = ".partial";
+constexpr const char* kDamaged = ".damaged";
 
 std::optional<std::uint64_t> round_of(const fs::path& path) {
   return parse_number<std::uint64_t>(path.filename().string());
@@ -70,7 +73,7 @@ std::string read_checked(const fs::path& file, const Json& expected) {
 }  // namespace
 
 fs::path Checkpoints::begin(std::uint64_t round) const {
-  fs::path partial = directory_ / (std::to_string(round) + ".partial");
+  fs::path partial = directory_ / (std::to_string(round) + kPartial);
   on_disk("create", partial, [&] {
     fs::remove_all(partial);
     fs::create_directories(partial);
@@ -79,7 +82,7 @@ fs::path Checkpoints::begin(std::uint64_t round) const {
 }
 
 void Checkpoints::commit(std::uint64_t round, int kept) const {
-  const fs::path partial = directory_ / (std::to_string(round) + ".partial");
+  const fs::path partial = directory_ / (std::to_string(round) + kPartial);
   const fs::path whole = directory_ / std::to_string(round);
   on_disk("complete checkpoint", partial, [&] {
     // Files that the newest checkpoint has too need not be read again.
@@ -108,7 +111,13 @@ void Checkpoints::commit(std::uint64_t round, int kept) const {
     std::vector<fs::path> doomed;
     for (const auto& entry : fs::directory_iterator(directory_)) {
       const auto found = round_of(entry.path());
-      if (!found || !std::ranges::binary_search(stay, *found)) doomed.push_back(entry.path());
+      // What people put beside them stays.
+      const bool ours =
+          found || (round_of(entry.path().stem()) &&
+                    (entry.path().extension() == kPartial || entry.path().extension() == kDamaged));
+      if (ours && !(found && std::ranges::binary_search(stay, *found))) {
+        doomed.push_back(entry.path());
+      }
     }
     for (const fs::path& path : doomed) fs::remove_all(path);
   });
@@ -150,7 +159,7 @@ std::vector<std::string> Checkpoints::set_aside_damaged() const {
                     directory_.string(), lines.front());
     }
     for (const fs::path& checkpoint : damaged) {
-      const fs::path aside = checkpoint.string() + ".damaged";
+      const fs::path aside = checkpoint.string() + kDamaged;
       fs::remove_all(aside);
       fs::rename(checkpoint, aside);
     }

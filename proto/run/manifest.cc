@@ -2,6 +2,7 @@
 #include "proto/run/manifest.h"
 
 #include "proto/base/failure.h"
+#include "proto/base/text.h"
 #include "proto/system/files.h"
 
 namespace corridor {
@@ -10,6 +11,29 @@ namespace {
 constexpr std::size_t kRunIdDigits = 32;
 
 }  // namespace
+
+std::vector<ChangedVersion> changed_versions(const RunVersions& before, const RunVersions& now) {
+  std::vector<ChangedVersion> changed;
+  const auto compare = [&](const char* name, const auto& was, const auto& is) {
+    if constexpr (std::is_same_v<std::decay_t<decltype(was)>, std::string>) {
+      if (was != is) changed.push_back({name, was, is});
+    } else if (was && is && *was != *is) {
+      changed.push_back({name, *was, *is});
+    }
+  };
+  compare("corridor", before.corridor, now.corridor);
+  compare("sumo", before.sumo, now.sumo);
+  compare("libtorch", before.libtorch, now.libtorch);
+  compare("blas", before.blas, now.blas);
+  compare("blas_core", before.blas_core, now.blas_core);
+  compare("blas_config", before.blas_config, now.blas_config);
+  compare("compiler", before.compiler, now.compiler);
+  return changed;
+}
+
+const RunVersions& RunManifest::versions_now() const {
+  return continuations && !continuations->empty() ? continuations->back().versions : versions;
+}
 
 void RunManifest::check() const {
   if (run_id.size() != kRunIdDigits ||
@@ -25,6 +49,19 @@ void write_manifest(const RunDirectory& directory, const RunManifest& manifest) 
 RunManifest read_manifest(const RunDirectory& directory) {
   return parse_record<RunManifest>(read_json(directory.manifest()), directory.manifest().string(),
                                    "manifest of a run");
+}
+
+std::filesystem::path results_folder(const RunDirectory& run) {
+  const RunManifest manifest = read_manifest(run);
+  if (!manifest.fingerprint || manifest.trained) return run.root();
+  return std::filesystem::path("evaluated") / std::filesystem::canonical(run.root()).filename();
+}
+
+RunDirectory open_results(const std::filesystem::path& run) {
+  const std::filesystem::path folder = results_folder(RunDirectory::open(run));
+  if (std::filesystem::exists(folder)) return RunDirectory::open(folder);
+  throw Failure("{} has networks only, and nothing is in {} yet: corridor evaluate {}",
+                run.string(), folder.string(), shell_quoted(run.string()));
 }
 
 }  // namespace corridor

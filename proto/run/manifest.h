@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "proto/run/json_record.h"
 #include "proto/run/run_directory.h"
@@ -20,6 +21,10 @@ struct RunVersions {
   std::string libtorch;
   std::string blas;
   std::string compiler;
+  // Of OpenBLAS, by which the learner computes: its kernels, and its version and options. Runs of
+  // earlier versions do not say.
+  std::optional<std::string> blas_core = {};
+  std::optional<std::string> blas_config = {};
 
   template <typename Self, typename Field>
   static void fields(Self& self, Field field) {
@@ -29,8 +34,48 @@ struct RunVersions {
     field("libtorch", self.libtorch);
     field("blas", self.blas);
     field("compiler", self.compiler);
+    field("blas_core", self.blas_core, kLeftOut);
+    field("blas_config", self.blas_config, kLeftOut);
   }
   bool operator==(const RunVersions&) const = default;
+};
+
+// What the learner alone knows of them, which it prints when it is asked.
+inline constexpr const char* kVersionsOption = "--versions";
+struct LearnerVersions {
+  std::string libtorch;
+  std::string blas_core;
+  std::string blas_config;
+
+  template <typename Self, typename Field>
+  static void fields(Self& self, Field field) {
+    field("libtorch", self.libtorch);
+    field("blas_core", self.blas_core);
+    field("blas_config", self.blas_config);
+  }
+};
+
+// Bits depend on all of it but the commit, which may have changed anything or nothing.
+struct ChangedVersion {
+  std::string name;  // "libtorch"
+  std::string before;
+  std::string now;
+};
+std::vector<ChangedVersion> changed_versions(const RunVersions& before, const RunVersions& now);
+
+// Where a training went on otherwise than it began, on request.
+struct Continuation {
+  std::uint64_t round = 0;  // the first that was driven so
+  RunVersions versions;
+  std::vector<std::string> changes;  // "libtorch 2.6.0, where it was 1.13.0"
+
+  template <typename Self, typename Field>
+  static void fields(Self& self, Field field) {
+    field("round", self.round);
+    field("versions", self.versions);
+    field("changes", self.changes);
+  }
+  bool operator==(const Continuation&) const = default;
 };
 
 struct RunManifest {
@@ -42,8 +87,14 @@ struct RunManifest {
   std::string cpu;
   unsigned cores = 0;
   RunVersions versions;
-  std::string config;                      // the settings that it began with, in TOML
-  std::optional<std::string> fingerprint;  // of an exported run, whose checkpoints stayed behind
+  // The settings that its result depends on, in TOML: those it began with, but for what
+  // `continuations` say.
+  std::string config;
+  std::optional<std::vector<Continuation>> continuations = {};
+  std::optional<std::string> fingerprint =
+      {};  // of an exported run, whose checkpoints stayed behind
+  // Of a directory that has results only: that of the run whose networks drove.
+  std::optional<std::string> trained = {};
 
   std::string scenario_name() const { return std::filesystem::path(scenario).stem(); }  // "paper"
 
@@ -58,8 +109,12 @@ struct RunManifest {
     field("cores", self.cores);
     field("versions", self.versions);
     field("config", self.config);
+    field("continuations", self.continuations, kLeftOut);
     field("fingerprint", self.fingerprint, kLeftOut);
+    field("trained", self.trained, kLeftOut);
   }
+  // What it was trained with last.
+  const RunVersions& versions_now() const;
   void check() const;
   bool operator==(const RunManifest&) const = default;
 };
@@ -68,5 +123,11 @@ struct RunManifest {
 void write_manifest(const RunDirectory& directory, const RunManifest& manifest);
 // Throws Failure naming the file when a member is missing or wrong.
 RunManifest read_manifest(const RunDirectory& directory);
+
+// Where what a run's networks drive is recorded, unless people say where: beside them. An exported
+// run may lie where nobody may write, or among sources: below the working directory, by its name.
+std::filesystem::path results_folder(const RunDirectory& run);
+// What is there. Throws Failure when nothing has been driven yet.
+RunDirectory open_results(const std::filesystem::path& run);
 
 }  // namespace corridor

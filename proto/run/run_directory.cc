@@ -2,6 +2,7 @@
 #include "proto/run/run_directory.h"
 
 #include "proto/base/failure.h"
+#include "proto/base/text.h"
 #include "proto/system/files.h"
 
 namespace corridor {
@@ -11,23 +12,25 @@ namespace fs = std::filesystem;
 
 constexpr const char* kFolders[] = {"sumo", "log", "metrics", "checkpoints", "evaluation/episodes"};
 
+// Where there is nothing yet; an empty folder is nobody's.
+const fs::path& unused(const fs::path& root) {
+  std::error_code ignored;
+  if (!fs::exists(fs::symlink_status(root, ignored)) || is_empty_folder(root)) return root;
+  if (fs::exists(root / kManifestFile, ignored)) {
+    throw Failure(
+        "{} exists already: continue it with `corridor resume {}`, or choose another name",
+        root.string(), shell_quoted(root.string()));
+  }
+  throw Failure("{} exists already and is no run, or one that never began: choose another name",
+                root.string());
+}
+
 }  // namespace
 
 std::string actor_name(int index) { return fmt::format("{}-{}", kActorName, index); }
 
 RunDirectory RunDirectory::create(const fs::path& root) {
-  RunDirectory directory(root);
-  std::error_code ignored;
-  if (fs::exists(directory.manifest(), ignored)) {
-    throw Failure("{} exists already: continue it with `corridor resume`, or choose another name",
-                  root.string());
-  }
-  if (fs::exists(root, ignored)) {
-    throw Failure(
-        "{} exists already and is no run, or one that never began: remove it, or choose "
-        "another name",
-        root.string());
-  }
+  RunDirectory directory(unused(root));
   directory.create_folders();
   for (const fs::path& made : {root, parent_of(root)}) sync_directory(made);
   return directory;
@@ -47,13 +50,28 @@ RunDirectory RunDirectory::open(const fs::path& root) {
 
 void RunDirectory::create_folders() const { corridor::create_folders(root_, kFolders); }
 
+void RunDirectory::remove_empty_folders() const {
+  std::error_code not_empty;
+  for (const char* folder : kFolders) {
+    for (fs::path path = folder; !path.empty(); path = path.parent_path()) {
+      fs::remove(root_ / path, not_empty);
+    }
+  }
+}
+
 void RunDirectory::remove_leftovers() const {
   on_disk("remove leftovers from", root_, [&] {
     std::vector<fs::path> doomed;
-    for (const auto& entry : fs::recursive_directory_iterator(root_)) {
+    const auto look = [&](const auto& entry) {
       if (is_leftover(entry.path()) || entry.path().extension() == ".partial") {
         doomed.push_back(entry.path());
       }
+    };
+    for (const auto& entry : fs::directory_iterator(root_)) look(entry);
+    for (const fs::path& folder : {network().parent_path(), root_ / "log", root_ / "metrics",
+                                   checkpoints(), tensorboard()}) {
+      if (!fs::exists(folder)) continue;
+      for (const auto& entry : fs::recursive_directory_iterator(folder)) look(entry);
     }
     for (const fs::path& path : doomed) fs::remove_all(path);
   });
@@ -78,5 +96,10 @@ fs::path RunDirectory::episode(const EpisodeName& name) const {
 fs::path RunDirectory::hindsight(const EvaluationName& name) const {
   return hindsight() / (name.text() + ".json");
 }
+
+NewRun::NewRun(const fs::path& root)
+    : folder_(unused(root)), directory_(RunDirectory::create(folder_.path())) {}
+
+bool NewRun::publish() { return folder_.publish(kManifestFile); }
 
 }  // namespace corridor

@@ -25,6 +25,7 @@
 
 #include "proto/run/episode_name.h"
 #include "proto/settings/sumo_names.h"
+#include "proto/system/files.h"
 
 namespace corridor {
 
@@ -39,23 +40,29 @@ inline constexpr const char* kLearnerProgram = "corridor-learner";
 inline constexpr const char* kReplayProgram = "corridor-replay";
 inline constexpr const char* kActorProgram = "corridor-actor";
 
+// What has made a folder a run, once it is there.
+inline constexpr const char* kManifestFile = "manifest.json";
+
 class RunDirectory {
  public:
-  // Throws Failure when it exists already (saying what to do) or cannot be created.
+  // Throws Failure when it is there already, with anything in it (saying what to do), or cannot be
+  // created. Others see it half filled: NewRun is for where that matters.
   static RunDirectory create(const std::filesystem::path& root);
   // Throws Failure when it is missing or no run directory (no config.toml or manifest.json).
   static RunDirectory open(const std::filesystem::path& root);
 
   // Those of its folders that are missing: version control keeps no empty ones. Throws Failure.
   void create_folders() const;
+  // Those of its folders that are empty go.
+  void remove_empty_folders() const;
 
-  // What processes that were killed left half-written. Nobody else may be using the directory
-  // (cluster/launch/run_lock.h).
+  // What processes of the training that were killed left half-written. Nobody else may be training
+  // there (cluster/launch/run_lock.h); what evaluations write is left alone.
   void remove_leftovers() const;
 
   const std::filesystem::path& root() const { return root_; }
   std::filesystem::path config() const { return root_ / "config.toml"; }
-  std::filesystem::path manifest() const { return root_ / "manifest.json"; }
+  std::filesystem::path manifest() const { return root_ / kManifestFile; }
   std::filesystem::path network() const { return root_ / "sumo" / kSumoNetworkFile; }
   std::filesystem::path routes() const { return root_ / "sumo" / kSumoRoutesFile; }
   std::filesystem::path log(std::string_view process) const;
@@ -77,6 +84,20 @@ class RunDirectory {
  private:
   explicit RunDirectory(std::filesystem::path root) : root_(std::move(root)) {}
   std::filesystem::path root_;
+};
+
+// A run directory that gets its name when it is whole.
+class NewRun {
+ public:
+  // Throws Failure as RunDirectory::create.
+  explicit NewRun(const std::filesystem::path& root);
+  const RunDirectory& directory() const { return directory_; }  // to be filled
+  // False when somebody else has been first; what they made is left alone.
+  bool publish();
+
+ private:
+  NewFolder folder_;
+  RunDirectory directory_;
 };
 
 }  // namespace corridor

@@ -21,7 +21,10 @@ Schedule::Schedule(const RunConfig& config)
       selection_every_(rounds_for(config.schedule.selection_every_steps, steps_per_round_)),
       checkpoint_every_(rounds_for(config.schedule.checkpoint_every_steps, steps_per_round_)) {
   for (std::size_t i = 0; i < config.dqn.size(); ++i) {
-    starts_[i + 1] = starts_[i] + rounds_for(config.dqn[i].steps, steps_per_round_);
+    const DqnSettings& dqn = config.dqn[i];
+    starts_[i + 1] = starts_[i] + rounds_for(dqn.steps, steps_per_round_);
+    annealing_rounds_[i] =
+        rounds_for(dqn.annealing_steps > 0 ? dqn.annealing_steps : dqn.steps, steps_per_round_);
   }
 }
 
@@ -39,9 +42,11 @@ std::int64_t Schedule::phase_steps_after(std::uint64_t round) const {
   return static_cast<std::int64_t>(round - first_round(phase_of(round)) + 1) * steps_per_round_;
 }
 
-double Schedule::phase_progress(std::uint64_t round) const {
+double Schedule::annealed(std::uint64_t round) const {
   const Phase phase = phase_of(round);
-  return static_cast<double>(round - first_round(phase)) / static_cast<double>(rounds_of(phase));
+  const double share = static_cast<double>(round - first_round(phase)) /
+                       static_cast<double>(annealing_rounds_[static_cast<std::size_t>(phase)]);
+  return std::min(share, 1.0);
 }
 
 std::uint64_t Schedule::weights_version(std::uint64_t round) const {

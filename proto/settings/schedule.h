@@ -31,8 +31,9 @@ class Schedule {
   // Environment steps of all actors in one round, and in the phase up to the end of `round`.
   std::int64_t steps_per_round() const { return steps_per_round_; }
   std::int64_t phase_steps_after(std::uint64_t round) const;
-  // Share of the phase's rounds that lie before `round`, in [0, 1).
-  double phase_progress(std::uint64_t round) const;
+  // Share of the phase's annealing_steps, its budget unless given, that lies before `round`, in
+  // [0, 1].
+  double annealed(std::uint64_t round) const;
 
   // The weights that round r is driven with: max(first round of its phase, r - 1). A phase's first
   // version is published before any of the phase's blocks is trained.
@@ -48,8 +49,9 @@ class Schedule {
  private:
   std::int64_t steps_per_round_;
   std::array<std::uint64_t, kNetworks.size() + 1> starts_{};  // of the phases; then rounds()
-  std::uint64_t selection_every_;                             // rounds
-  std::uint64_t checkpoint_every_;                            // rounds
+  std::array<std::uint64_t, kNetworks.size()> annealing_rounds_{};
+  std::uint64_t selection_every_;   // rounds
+  std::uint64_t checkpoint_every_;  // rounds
 };
 
 }  // namespace corridor

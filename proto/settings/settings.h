@@ -94,6 +94,7 @@ struct DqnSettings {
   int target_copy_updates = 1000;
   double learning_rate = 5e-4;
   double learning_rate_end = 5e-5;
+  std::int64_t annealing_steps = 0;  // 0: `steps`
   double adam_epsilon = 1e-8;
   double huber_delta = 1.0;
   // Polyak and Juditsky 1992: a single iterate's noise makes a BP change lanes needlessly.

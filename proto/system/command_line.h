@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdint>
 #include <optional>
+#include <sstream>
 #include <string>
 
 #include "proto/base/failure.h"
@@ -25,6 +26,15 @@ inline CLI::Validator whole_number(std::uint64_t low, std::uint64_t high) {
       "");
 }
 
+// Refuses "" for whatever takes a value: a script's variable that nobody has set.
+inline void refuse_empty_values(CLI::App& app) {
+  for (CLI::Option* const option : app.get_options()) {
+    if (option->get_items_expected_max() == 0) continue;
+    option->check(CLI::Validator(
+        [](const std::string& text) { return text.empty() ? "its value is empty" : ""; }, ""));
+  }
+}
+
 // Parses, --version included. Returns the exit status where that is all there is to do (--help,
 // --version), else nothing. Throws Failure in one line for what is wrong; `program` is how people
 // call it.
@@ -34,7 +44,12 @@ inline std::optional<int> parse_command_line(CLI::App& app, const std::string& p
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return app.exit(error);
+    if (error.get_exit_code() == 0) {
+      std::ostringstream text, no_errors;
+      const int status = app.exit(error, text, no_errors);
+      fmt::print("{}", text.str());  // run_program sees to what is lost of it
+      return status;
+    }
     throw Failure("{}; see {} --help", error.what(), program);
   }
   return std::nullopt;

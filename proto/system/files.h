@@ -9,6 +9,7 @@
 
 #include "proto/base/failure.h"
 #include "proto/base/json_fwd.h"
+#include "proto/system/descriptor.h"
 
 namespace corridor {
 
@@ -37,17 +38,72 @@ void on_disk(const char* what, const std::filesystem::path& path, const Action& 
   }
 }
 
-// A folder that goes, with all in it, unless what is made there is kept.
-class FolderInTheMaking {
+// A folder that gets its name when it is whole: of several processes that make one, one comes
+// first, and nobody sees it half filled.
+class NewFolder {
  public:
-  explicit FolderInTheMaking(std::filesystem::path folder) : folder_(std::move(folder)) {}
-  ~FolderInTheMaking();
-  FolderInTheMaking(const FolderInTheMaking&) = delete;
-  FolderInTheMaking& operator=(const FolderInTheMaking&) = delete;
-  void keep() { folder_.clear(); }
+  // Creates an empty folder to fill, beside `target`, or in it where that is an empty folder
+  // already. Throws Failure.
+  explicit NewFolder(const std::filesystem::path& target);
+  // What has not been published goes, with all in it.
+  ~NewFolder();
+  NewFolder(const NewFolder&) = delete;
+  NewFolder& operator=(const NewFolder&) = delete;
+
+  const std::filesystem::path& path() const { return path_; }
+  // Gives it its name. False when something else has that name by now, which is left as it is. In a
+  // folder that was there already, `last` is the file that comes there last. Throws Failure.
+  bool publish(const std::filesystem::path& last = {});
 
  private:
-  std::filesystem::path folder_;
+  std::filesystem::path target_;
+  std::filesystem::path path_;
+  bool in_target_ = false;
+};
+
+// Whether it is there and has nothing in it.
+bool is_empty_folder(const std::filesystem::path& path);
+
+// Where a user wants a result: a file, which is replaced whole, also where a symbolic link leads to
+// it; a pipe or device, which is written to as it is; or "-", standard output.
+class OutputFile {
+ public:
+  // Before the work: throws Failure when it could not be written to.
+  explicit OutputFile(std::filesystem::path file);
+  bool is_standard_output() const { return file_ == "-"; }
+  // Waits for a pipe's reader. Throws Failure, and Stopped when a signal ends the wait.
+  void write(std::string_view content) const;
+
+ private:
+  std::filesystem::path file_;
+  bool through_ = false;  // not to be replaced
+};
+
+// A file without a name, in the system's folder for temporary files: gone with the object, however
+// this process ends.
+class UnnamedFile {
+ public:
+  UnnamedFile();
+  // At its end. Throws Failure when the disk is full.
+  void append(std::string_view content);
+  std::string content() const;
+  // In this process, and in programs that it starts while the object lives.
+  std::filesystem::path path() const;
+
+ private:
+  Descriptor descriptor_;
+};
+
+// Another name for a folder, in which no option parser finds a character that means something to it
+// (SUMO's reads , and : and ${} in paths). In this process, while the object lives.
+class PlainlyNamedFolder {
+ public:
+  // Throws Failure when there is no such folder.
+  explicit PlainlyNamedFolder(const std::filesystem::path& folder);
+  std::filesystem::path path() const;
+
+ private:
+  Descriptor descriptor_;
 };
 
 // The folder that a file lies in: "." for a bare name.

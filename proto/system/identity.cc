@@ -2,6 +2,7 @@
 #include "proto/system/identity.h"
 
 #include <sys/random.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <array>
@@ -28,6 +29,12 @@ std::uint64_t random_64_bits() {
 std::string host_name() {
   std::array<char, 256> name{};
   return gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "unknown";
+}
+
+std::string folder_identity(const std::filesystem::path& folder) {
+  struct stat status {};
+  if (stat(folder.c_str(), &status) == 0) return fmt::format("{}:{}", status.st_dev, status.st_ino);
+  throw Failure("cannot look at {}: {}", folder.string(), std::strerror(errno));
 }
 
 std::uint64_t incarnation_of(std::uint32_t starts, std::uint64_t random) {

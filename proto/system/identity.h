@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <string>
 
 namespace corridor {
@@ -12,6 +13,10 @@ std::uint64_t random_64_bits();
 
 // "unknown" when it has none.
 std::string host_name();
+
+// Tells a folder from its copies, by whatever path it is reached. Throws Failure when there is
+// none.
+std::string folder_identity(const std::filesystem::path& folder);
 
 // An incarnation tells a process from those of its name that ran before it, also when a message of
 // one of them arrives late, even its first: it is greater than theirs. The upper half counts the

@@ -20,6 +20,7 @@
 #include "proto/base/failure.h"
 #include "proto/system/clock.h"
 #include "proto/system/descriptor.h"
+#include "proto/system/program.h"
 
 namespace corridor {
 namespace {
@@ -27,6 +28,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kOutputBytesMax = 64 << 20;
+constexpr long kLookEvery_ms = 200;  // whether a signal has come just before a wait
 
 [[noreturn]] void fail(const fs::path& program, int error) {
   throw Failure("cannot start {}: {}", program.string(), std::strerror(error));
@@ -60,7 +62,7 @@ Pipe make_pipe(const fs::path& program) {
 class Child {
  public:
   Child(const fs::path& program, const std::vector<std::string>& arguments,
-        const std::string& input)
+        const std::string& input, const fs::path& directory)
       : output_(make_pipe(program)), errors_(make_pipe(program)) {
     const Descriptor in = memory_file(input, program);
     posix_spawn_file_actions_t files;
@@ -68,8 +70,9 @@ class Child {
     posix_spawn_file_actions_adddup2(&files, in.get(), STDIN_FILENO);
     posix_spawn_file_actions_adddup2(&files, output_.write_end.get(), STDOUT_FILENO);
     posix_spawn_file_actions_adddup2(&files, errors_.write_end.get(), STDERR_FILENO);
+    if (!directory.empty()) posix_spawn_file_actions_addchdir_np(&files, directory.c_str());
     std::vector<std::string> words = arguments;
-    words.insert(words.begin(), program.string());
+    words.insert(words.begin(), fs::absolute(program).string());
     const std::vector<char*> argv = pointers_to(words);
     const int error = posix_spawn(&pid_, argv[0], &files, nullptr, argv.data(), environ);
     posix_spawn_file_actions_destroy(&files);
@@ -94,12 +97,14 @@ class Child {
   bool run(TimePoint deadline, SubprocessResult& result) {
     while (output_.read_end.get() >= 0 || errors_.read_end.get() >= 0 || end_.get() >= 0) {
       const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - steady_now());
+      throw_if_stopped();
       if (left.count() <= 0) return false;
       // A descriptor of -1 is none to poll.
       pollfd ready[] = {{output_.read_end.get(), POLLIN, 0},
                         {errors_.read_end.get(), POLLIN, 0},
                         {end_.get(), POLLIN, 0}};
-      if (poll(ready, 3, static_cast<int>(std::min<long>(left.count(), 1000))) <= 0) continue;
+      if (poll(ready, 3, static_cast<int>(std::min<long>(left.count(), kLookEvery_ms))) <= 0)
+        continue;
       if (ready[0].revents != 0) read_some(output_.read_end, result.output);
       if (ready[1].revents != 0) read_some(errors_.read_end, result.errors);
       if (ready[2].revents != 0) result.status = reap();
@@ -162,9 +167,10 @@ std::vector<char*> pointers_to(std::vector<std::string>& texts) {
 std::optional<SubprocessResult> run_subprocess(const fs::path& program,
                                                const std::vector<std::string>& arguments,
                                                const std::string& input,
-                                               std::chrono::milliseconds patience) {
+                                               std::chrono::milliseconds patience,
+                                               const fs::path& directory) {
   const TimePoint deadline = steady_now() + patience;
-  Child child(program, arguments, input);
+  Child child(program, arguments, input, directory);
   SubprocessResult result;
   if (!child.run(deadline, result)) return std::nullopt;
   return result;

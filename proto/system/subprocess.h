@@ -24,12 +24,14 @@ struct SubprocessResult {
   bool operator==(const SubprocessResult&) const = default;
 };
 
-// Runs `program` with `input` as its standard input until it has ended and nobody has its outputs
-// open any more. Returns nothing, and kills it, when that is not so once `patience` is over. Throws
-// Failure when it cannot be started.
+// Runs `program` in `directory` (this process's, unless given) with `input` as its standard input
+// until it has ended and nobody has its outputs open any more. Returns nothing, and kills it, when
+// that is not so once `patience` is over. Throws Failure when it cannot be started, and Stopped,
+// having killed it, when a signal asks this process to end (proto/system/program.h).
 std::optional<SubprocessResult> run_subprocess(const std::filesystem::path& program,
                                                const std::vector<std::string>& arguments,
                                                const std::string& input,
-                                               std::chrono::milliseconds patience);
+                                               std::chrono::milliseconds patience,
+                                               const std::filesystem::path& directory = {});
 
 }  // namespace corridor

@@ -2,6 +2,7 @@
 // Where a run's servers listen, and what every conversation with them does alike.
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <variant>
 
@@ -15,12 +16,18 @@ struct Addresses {
   std::string replay;
   std::string learner;
 };
-// From [run] and the run id (of which ipc names show a hash only: the id is what lets one in).
-Addresses addresses(const RunSettings& settings, const std::string& run_id);
+// From [run], and for ipc from a hash of the run id, which is what lets one in, and of the run's
+// directory: a copy of it is another run's.
+Addresses addresses(const RunSettings& settings, const std::string& run_id,
+                    const std::filesystem::path& directory);
 
-// In the background, as Client says; with the limits of [run].
-Client connect_to_replay(const RunSettings& settings, const ClientIdentity& identity);
-Client connect_to_learner(const RunSettings& settings, const ClientIdentity& identity);
+// In the background, as Client says; with the limits of [run]. Processes that talk by ipc have one
+// starter, which knows better than they who hangs and who only waits for a processor: they are ten
+// times as patient.
+Client connect_to_replay(const RunSettings& settings, const ClientIdentity& identity,
+                         const std::filesystem::path& directory);
+Client connect_to_learner(const RunSettings& settings, const ClientIdentity& identity,
+                          const std::filesystem::path& directory);
 
 // The reply that was asked for: `decode` gives a variant of all. Throws Failure when it is another
 // one, or malformed.

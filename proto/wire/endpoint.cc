@@ -315,7 +315,8 @@ Address bindable(const Address& address) {
 const char* advice(int error) {
   switch (error) {
     case EADDRINUSE:
-      return "another process listens there: end it, or choose other ports in [run]";
+      return "another process listens there: end it, or choose other ports (run.replay_port, "
+             "run.learner_port)";
     case EADDRNOTAVAIL:
     case ENODEV:
       return "this machine has no such interface: correct run.host";

@@ -96,7 +96,7 @@ class Rounds : public testing::Test {
 
  private:
   const std::string run_id_ = fmt::format("{:032x}", getpid());
-  const Addresses addresses_ = addresses(config_.run, run_id_);
+  const Addresses addresses_ = addresses(config_.run, run_id_, directory_.root());
   std::uint64_t incarnation_ = 0;
 };
 

@@ -141,8 +141,7 @@ int run(const std::string& scenario, int actors, const std::string& seed,
   std::printf("%s with %d actors: %.1f s from command to prompt\n", scenario.c_str(), actors,
               trained.seconds);
   const RunDirectory directory = RunDirectory::open(root);
-  print(phases_of(directory, actors), load_run_config(directory.config()),
-        cluster::available_cores());
+  print(phases_of(directory, actors), load_run_config(directory.config()), available_cores());
   print_memory(directory);
 
   // An actor that drives a single step, from exec to its end.

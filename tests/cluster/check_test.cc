@@ -25,7 +25,7 @@ TEST(Check, SaysWhatAScenarioThatNetconvertAcceptsComesToAndLeavesNothing) {
   const auto before = std::filesystem::current_path();
   setenv("TMPDIR", temporary.path().c_str(), 1);
   testing::internal::CaptureStdout();
-  EXPECT_EQ(check(file), 0);
+  EXPECT_EQ(check(file, {}), 0);
   unsetenv("TMPDIR");
   EXPECT_THAT(
       testing::internal::GetCapturedStdout(),
@@ -36,11 +36,21 @@ TEST(Check, SaysWhatAScenarioThatNetconvertAcceptsComesToAndLeavesNothing) {
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(temporary.path()), {}), 1);
 }
 
+TEST(Check, WarnsOfWhatMakesNoSenseAndTakesOverrides) {
+  const testing_support::TemporaryDirectory temporary;
+  const auto file = temporary.path() / "scenario.toml";
+  write_file(file, "");
+  testing::internal::CaptureStdout();
+  EXPECT_EQ(check(file, {"mop.steps=3000"}), 0);
+  EXPECT_THAT(testing::internal::GetCapturedStdout(),
+              HasSubstr("warning     the MoP would learn nothing"));
+}
+
 TEST(Check, RefusesAWrongScenario) {
   const testing_support::TemporaryDirectory temporary;
   const auto file = temporary.path() / "scenario.toml";
   write_file(file, "[road]\nlanes = -1\n");
-  EXPECT_THROW(check(file), Failure);
+  EXPECT_THROW(check(file, {}), Failure);
 }
 
 }  // namespace

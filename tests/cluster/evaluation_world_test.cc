@@ -71,9 +71,38 @@ TEST_F(EvaluationPlaces, AnotherScenarioHasItsWorldAndTheRunsPlanners) {
 
   write_file(scenario, "[traffic]\nvehicles_max = 18\n");
   EXPECT_THAT([&] { in({scenario}); },
-              ThrowsMessage<Failure>(HasSubstr("driven with other settings")));
-  std::filesystem::remove(place.directory.manifest());  // as if stopped before it was written
+              ThrowsMessage<Failure>(HasSubstr("holds results of other settings")));
+  std::filesystem::remove(place.directory.manifest());
+  EXPECT_THAT([&] { in({scenario}); }, ThrowsMessage<Failure>(HasSubstr("exists already")))
+      << "somebody else's";
+  std::filesystem::remove_all(place.directory.root());
   EXPECT_EQ(in({scenario}).config.traffic.vehicles_max, 18);
+}
+
+TEST_F(EvaluationPlaces, ResultsOfWhatIsNotToBeWrittenToLieElsewhereAndSayWhoseTheyAre) {
+  const auto out = temporary_.path() / "out";
+  const EvaluationPlace place = evaluation_place(directory_.root(), {}, out);
+  EXPECT_EQ(place.directory.root(), out);
+  EXPECT_EQ(place.trained.root(), directory_.root());
+  EXPECT_EQ(to_toml(place.config), to_toml(config_));
+  const EvaluationPlace other =
+      evaluation_place(directory_.root(), {{}, {"traffic.vehicles_max=12"}}, out);
+  EXPECT_EQ(other.directory.root(), out / "scenarios" / "fake+vehicles_max=12");
+  // They can be named in the run's stead, and say which it is.
+  for (const auto& results : {out, other.directory.root()}) {
+    const EvaluationPlace again = evaluation_place(results, {});
+    EXPECT_EQ(again.directory.root(), results);
+    EXPECT_EQ(again.trained.root(), std::filesystem::canonical(directory_.root()));
+  }
+  EXPECT_EQ(evaluation_place(other.directory.root(), {}).config.traffic.vehicles_max, 12);
+
+  const RunDirectory stranger =
+      testing_support::untrained_run(temporary_.path() / "stranger", config_);
+  RunManifest manifest = read_manifest(stranger);
+  manifest.run_id[0] = 'f';
+  write_manifest(stranger, manifest);
+  EXPECT_THAT([&] { evaluation_place(stranger.root(), {}, out); },
+              ThrowsMessage<Failure>(HasSubstr("holds results of another run")));
 }
 
 TEST_F(EvaluationPlaces, AScenarioThatTheNetworksDoNotFitIsRefused) {
@@ -106,7 +135,6 @@ TEST_F(EvaluationPlaces, AnEpisodeIsFoundByFileOrByName) {
 TEST_F(EvaluationPlaces, TheRunsOwnWorldIsTheRunItself) {
   const EvaluationPlace place = own();
   EXPECT_EQ(place.directory.root(), directory_.root());
-  EXPECT_TRUE(std::filesystem::exists(place.directory.network()));
   EXPECT_FALSE(std::filesystem::exists(RunDirectory::scenarios(directory_.root())));
 }
 

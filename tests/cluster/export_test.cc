@@ -30,5 +30,19 @@ TEST(Export, OfATrainingThatIsNotCompleteIsRefusedAndLeavesNothing) {
   refused();
 }
 
+TEST(Export, OfWhatIsExportedAndIntoTheRunItselfIsRefused) {
+  testing_support::TemporaryDirectory temporary;
+  const RunDirectory run = testing_support::untrained_run(temporary.path() / "run");
+  EXPECT_THAT([&] { export_run(run.root(), run.root() / "log" / ".." / "x"); },
+              ThrowsMessage<Failure>(HasSubstr("choose a place outside the run")));
+  RunManifest manifest = read_manifest(run);
+  manifest.fingerprint = "0123456789abcdef";
+  write_manifest(run, manifest);
+  write_file(run.networks(), "");
+  EXPECT_THAT([&] { export_run(run.root(), temporary.path() / "to"); },
+              ThrowsMessage<Failure>(HasSubstr("is exported already: copy its folder")));
+  EXPECT_FALSE(std::filesystem::exists(temporary.path() / "to"));
+}
+
 }  // namespace
 }  // namespace corridor::cluster

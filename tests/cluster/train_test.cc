@@ -23,15 +23,18 @@ using testing::AnyOf;
 using testing::HasSubstr;
 using testing::ThrowsMessage;
 
+// Of the manifest that make_run writes.
+RunVersions as_trained() { return testing_support::some_manifest(RunConfig()).versions; }
+
 class Training : public testing::Test {
  protected:
   Training() { write_file(scenario_, to_toml(RunConfig())); }
 
   // The checkpoint's files are made up: the replay server or the learner says which it misses.
   // Where the programs have not been built, that is what is said.
-  void expect_refused_by_its_programs() {
+  void expect_refused_by_its_programs(const std::vector<std::string>& settings = {}) {
     EXPECT_THAT(
-        [&] { resume({.run = run_}, "corridor"); },
+        [&] { resume({.run = run_, .settings = settings}, "corridor", as_trained); },
         ThrowsMessage<Failure>(AnyOf(
             AllOf(HasSubstr("manifest.json is damaged: it names no"), HasSubstr("safetensors")),
             HasSubstr("is the build complete?"))));
@@ -83,34 +86,88 @@ RunDirectory make_run(const std::filesystem::path& root, std::uint64_t rounds_do
 TEST_F(Training, ACompleteRunIsNotResumedAndThatIsNoError) {
   make_run(run_, Schedule(RunConfig()).rounds());
   testing::internal::CaptureStdout();
-  EXPECT_EQ(resume({.run = run_}, "bin/corridor"), 0);
+  EXPECT_EQ(resume({.run = run_}, "bin/corridor", as_trained), 0);
   EXPECT_THAT(testing::internal::GetCapturedStdout(),
               AllOf(HasSubstr("is complete"), HasSubstr("bin/corridor evaluate " + run_.string())));
 }
 
 TEST_F(Training, ARunThatIsGoingOnIsNotResumed) {
   const RunDirectory directory = make_run(run_, 1);
-  const Descriptor lock = lock_run(directory);
-  EXPECT_THAT([&] { resume({.run = run_}, "corridor"); },
+  const Descriptor lock = lock_folder(directory.root());
+  EXPECT_THAT([&] { resume({.run = run_}, "corridor", as_trained); },
               ThrowsMessage<Failure>(HasSubstr("is going on")));
 }
 
 TEST_F(Training, ASettingThatTheResultDependsOnIsNotChangedInTheMiddle) {
   const RunDirectory directory = make_run(run_, Schedule(RunConfig()).rounds());
-  EXPECT_THAT([&] { resume({.run = run_, .settings = {"mop.gamma=0.5"}}, "corridor"); },
+  EXPECT_THAT([&] { resume({.run = run_, .settings = {"mop.gamma=0.5"}}, "corridor", as_trained); },
               ThrowsMessage<Failure>(AllOf(HasSubstr("mop.gamma = 0.5"), HasSubstr("began with"))));
   EXPECT_EQ(read_file(directory.config()), to_toml(RunConfig()));
   RunConfig changed;
   changed.run.actors = 3;
   write_file(directory.config(), to_toml(changed));
-  EXPECT_THAT([&] { resume({.run = run_}, "corridor"); },
+  EXPECT_THAT([&] { resume({.run = run_}, "corridor", as_trained); },
               ThrowsMessage<Failure>(HasSubstr("run.actors = 3: the run began with 2")));
+}
+
+TEST_F(Training, APhaseMayGoOnForLongerWhereNoLaterOneHasBegun) {
+  const std::uint64_t mop_rounds = Schedule(RunConfig()).rounds_of(Phase::kMop);
+  const RunDirectory directory = make_run(run_, mop_rounds - 1);
+  const RunConfig before;
+  testing::internal::CaptureStdout();
+  expect_refused_by_its_programs({"mop.steps=2000000"});
+  EXPECT_THAT(testing::internal::GetCapturedStdout(),
+              AllOf(HasSubstr("the phase goes on"),
+                    HasSubstr("mop.steps = 2000000, where it was 1000000")));
+  const RunConfig now = load_run_config(directory.config());
+  EXPECT_EQ(now.phase(Phase::kMop).steps, 2'000'000);
+  EXPECT_EQ(now.phase(Phase::kMop).annealing_steps, before.phase(Phase::kMop).steps);
+  EXPECT_EQ(now.phase(Phase::kBp).annealing_steps, 0);
+  const RunManifest manifest = read_manifest(directory);
+  ASSERT_EQ(manifest.continuations.value().size(), 1u);
+  EXPECT_EQ(manifest.continuations->front().round, mop_rounds - 1);
+  EXPECT_EQ(manifest.config, to_toml(now));
+}
+
+TEST_F(Training, APhaseThatIsOverIsNotMadeLongerAndNoneShorter) {
+  const std::uint64_t mop_rounds = Schedule(RunConfig()).rounds_of(Phase::kMop);
+  make_run(run_, mop_rounds);
+  for (const char* setting : {"mop.steps=2000000", "bp.steps=3000", "mop.steps=2000"}) {
+    EXPECT_THAT([&] { resume({.run = run_, .settings = {setting}}, "corridor", as_trained); },
+                ThrowsMessage<Failure>(HasSubstr("its result depends on it")))
+        << setting;
+  }
+}
+
+TEST_F(Training, OtherLibrariesAreRefusedByNameUnlessTheyAreAllowedAndThenRecorded) {
+  const RunDirectory directory = make_run(run_, Schedule(RunConfig()).rounds());
+  const auto other = [] {
+    RunVersions versions = as_trained();
+    versions.libtorch = "2.6.0";
+    return versions;
+  };
+  EXPECT_THAT([&] { resume({.run = run_}, "corridor", other); },
+              ThrowsMessage<Failure>(AllOf(HasSubstr("libtorch 1.13.0"), HasSubstr("2.6.0"),
+                                           HasSubstr("--allow-other-bits"))));
+  EXPECT_EQ(read_manifest(directory).continuations, std::nullopt);
+  testing::internal::CaptureStdout();
+  EXPECT_EQ(resume({.run = run_, .allow_other_bits = true}, "corridor", other), 0);
+  EXPECT_THAT(testing::internal::GetCapturedStdout(),
+              HasSubstr("libtorch 2.6.0, where it was 1.13.0"));
+  const RunManifest manifest = read_manifest(directory);
+  ASSERT_EQ(manifest.continuations.value().size(), 1u);
+  EXPECT_EQ(manifest.versions, as_trained()) << "it began with them";
+  testing::internal::CaptureStdout();
+  EXPECT_EQ(resume({.run = run_}, "corridor", other), 0) << "it is now trained with these";
+  testing::internal::GetCapturedStdout();
 }
 
 TEST_F(Training, OthersAreAppliedAndStay) {
   const RunDirectory directory = make_run(run_, Schedule(RunConfig()).rounds());
   testing::internal::CaptureStdout();
-  EXPECT_EQ(resume({.run = run_, .settings = {"schedule.checkpoints_kept=7"}}, "corridor"), 0);
+  EXPECT_EQ(
+      resume({.run = run_, .settings = {"schedule.checkpoints_kept=7"}}, "corridor", as_trained),
+      0);
   EXPECT_THAT(testing::internal::GetCapturedStdout(),
               HasSubstr("schedule.checkpoints_kept = 7, where the run began with 2"));
   EXPECT_EQ(load_run_config(directory.config()).schedule.checkpoints_kept, 7);

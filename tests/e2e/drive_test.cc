@@ -17,6 +17,7 @@ class Drive : public testing::Test {
  protected:
   // The networks that the repository holds, in a directory to write to.
   Drive() {
+    std::filesystem::current_path(temporary_.path());  // where results go
     std::filesystem::create_directories(run_);
     // Not what evaluations left beside them.
     for (const char* file : {"config.toml", "manifest.json", "networks.safetensors"})
@@ -29,7 +30,8 @@ class Drive : public testing::Test {
   }
 
   TemporaryDirectory temporary_;
-  std::filesystem::path run_ = temporary_.path() / "run", out_ = temporary_.path() / "out";
+  std::filesystem::path run_ = temporary_.path() / "run", out_ = temporary_.path() / "out",
+                        results_ = temporary_.path() / "evaluated" / "run";
 };
 
 TEST_F(Drive, EvaluatesTheSameNetworksInEveryWorldBitForBit) {
@@ -40,7 +42,7 @@ TEST_F(Drive, EvaluatesTheSameNetworksInEveryWorldBitForBit) {
            world, "--planners", "hierarchical,rules", "--steps", "150"},
           kDeadline_s);
       EXPECT_EQ(result.status, 0) << result.output;
-      const auto place = run_ / "scenarios" / ("paper_substeps+world=" + std::string(world));
+      const auto place = results_ / "scenarios" / ("paper_substeps+world=" + std::string(world));
       return read_file(place / "evaluation" / "hierarchical_1002.json");
     };
     EXPECT_EQ(evaluate(), evaluate()) << world;

@@ -21,23 +21,23 @@ TEST(Networks, OfATrainedRunDriveElsewhereAndAreTrainedOnReproducibly) {
   EXPECT_EQ(
       Json::parse(read_file(exported / "manifest.json"))["fingerprint"].get<std::string>() + "\n",
       fingerprint(run));
-  // As a version control system would bring it.
-  for (const char* empty : {"sumo", "log", "metrics", "checkpoints", "evaluation"}) {
-    std::filesystem::remove_all(exported / empty);
-  }
+  EXPECT_THAT(
+      testing_support::names_in(exported),
+      testing::UnorderedElementsAre("config.toml", "manifest.json", "networks.safetensors"));
   const std::vector<std::string> how = {"--planners", "hierarchical", "--seeds",
                                         "5",          "--steps",      "300"};
-  for (const auto& directory : {run, exported}) {
-    std::vector<std::string> command = {kCorridor, "evaluate", directory};
+  const auto results = temporary.path() / "results";
+  for (const auto& [directory, out] : {std::pair{run, run}, std::pair{exported, results}}) {
+    std::vector<std::string> command = {kCorridor, "evaluate", directory, "--out", out};
     command.insert(command.end(), how.begin(), how.end());
     const CommandResult evaluated = run_command(command, kDeadline_s);
     ASSERT_EQ(evaluated.status, 0) << evaluated.output;
   }
   EXPECT_EQ(read_file(run / "evaluation" / "hierarchical_5.json"),
-            read_file(exported / "evaluation" / "hierarchical_5.json"));
+            read_file(results / "evaluation" / "hierarchical_5.json"));
   const CommandResult resumed = run_command({kCorridor, "resume", exported}, kDeadline_s);
   EXPECT_EQ(resumed.status, 1);
-  EXPECT_THAT(resumed.output, HasSubstr("is an exported run"));
+  EXPECT_THAT(resumed.output, HasSubstr("has no training to go on with"));
 
   // Trained on, the MoP under the learned BP; once in one go, once interrupted.
   const auto on = temporary.path() / "on", broken = temporary.path() / "broken";

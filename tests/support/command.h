@@ -32,6 +32,7 @@ class Command {
     pid_ = fork();
     if (pid_ < 0) throw std::runtime_error("fork");
     if (pid_ == 0) {
+      setpgid(0, 0);  // as a shell with job control does
       dup2(ends[1], STDOUT_FILENO);
       dup2(ends[1], STDERR_FILENO);
       for (const auto& [name, value] : environment) setenv(name.c_str(), value.c_str(), 1);

@@ -23,6 +23,8 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::ThrowsMessage;
 
+const Silence kSilence{seconds(30), seconds(30)};
+
 constexpr TimePoint at(int second) { return TimePoint(seconds(second)); }
 
 class ChildrenTest : public testing::Test {
@@ -44,6 +46,12 @@ class ChildrenTest : public testing::Test {
     siginfo_t info{};
     EXPECT_EQ(waitid(P_ALL, 0, &info, WEXITED | WNOWAIT), 0);
     return children_.reap().value();
+  }
+
+  // Looks every second; returns the last.
+  int pass(int from, int to) {
+    for (int second = from; second <= to; ++second) children_.kill_hung(kSilence, at(second));
+    return to;
   }
 
   testing_support::TemporaryDirectory temporary_;
@@ -122,14 +130,49 @@ TEST_F(ChildrenTest, OfWhichAllOrOneGetsASignal) {
 
 TEST_F(ChildrenTest, WhosePulseStandsStillForTooLongAreKilledAsHung) {
   children_.start(script("silent", "exec sleep 600"));
-  children_.kill_hung(seconds(30), at(1000));
-  children_.kill_hung(seconds(30), at(1029));
+  const int end = pass(1000, 1029);
   EXPECT_EQ(children_.reap().has_value(), false);
-  children_.kill_hung(seconds(30), at(1030));
+  pass(end, end + 1);
   const Ended ended = next_end();
-  EXPECT_TRUE(ended.hung);
+  EXPECT_EQ(ended.hung_s, 30.0);
   EXPECT_FALSE(ended.knows_why());
-  EXPECT_EQ(ended.cause(), "silent was killed, since it hung; log: " + log("silent").string());
+  EXPECT_EQ(
+      ended.cause(),
+      "silent was killed, since it gave no sign of life for 30 s (run.peer_timeout_s); log: " +
+          log("silent").string());
+}
+
+TEST_F(ChildrenTest, AreNotHungWhileItIsWeWhoWereStopped) {
+  children_.start(script("silent", "exec sleep 600"));
+  pass(0, 20);
+  children_.kill_hung(kSilence, at(5000));  // an hour on: nobody has looked
+  EXPECT_EQ(children_.reap().has_value(), false);
+}
+
+TEST_F(ChildrenTest, GetTwiceTheTimeOnceTheyHaveBeenKilledForTheirSilence) {
+  int second = 0;
+  for (const int longest : {30, 60, 120, 240, 240}) {
+    children_.start(script("slow", "exec sleep 600"));
+    second = pass(second, second + longest - 1);
+    EXPECT_EQ(children_.reap().has_value(), false) << longest;
+    second = pass(second, second + 1);
+    EXPECT_EQ(next_end().hung_s, longest);
+  }
+}
+
+TEST_F(ChildrenTest, ThatComputeWithoutASignOfLifeAreHungToo) {
+  children_.start(script("busy", "while :; do :; done"));
+  Ended ended;
+  int second = 0;
+  while (true) {
+    second = pass(second, second + 1);
+    if (const auto end = children_.reap()) {
+      ended = *end;
+      break;
+    }
+    ASSERT_LT(second, 1'000'000);
+  }
+  EXPECT_TRUE(ended.hung_s);
 }
 
 TEST_F(ChildrenTest, WhosePulseGoesOnAreNotHungHoweverLongTheyLive) {
@@ -145,11 +188,11 @@ TEST_F(ChildrenTest, WhosePulseGoesOnAreNotHungHoweverLongTheyLive) {
     tell << "00" << i << std::endl;
     std::string told;
     std::getline(std::ifstream(beaten), told);
-    children_.kill_hung(seconds(30), at(29 * i));
+    pass(29 * i, 29 * (i + 1));
   }
   children_.signal(SIGTERM);
   const Ended ended = next_end();
-  EXPECT_FALSE(ended.hung);
+  EXPECT_FALSE(ended.hung_s);
   EXPECT_EQ(WTERMSIG(ended.status), SIGTERM);
 }
 

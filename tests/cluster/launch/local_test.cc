@@ -228,8 +228,8 @@ TEST_F(Local, OneWithoutASignOfLifeIsKilledAndStartedAgain) {
   });
   supervision.died = [&](const Ended& ended, bool) { cause = ended.cause(); };
   EXPECT_EQ(run_together({plan}, "main", limits, supervision), 0);
-  EXPECT_THAT(cause, HasSubstr("main was killed, since it hung"));
-  EXPECT_GE(time.now(), TimePoint(kLimits.hung));
+  EXPECT_THAT(cause, HasSubstr("main was killed, since it gave no sign of life"));
+  EXPECT_GE(time.now(), TimePoint(kLimits.silence.loading));
   EXPECT_EQ(content("starts"), "x\nx\n");
 }
 
@@ -379,7 +379,7 @@ TEST_F(Local, AProcessThatIsStoppedBeforeItIsItsProgramIsFoundAsHungAndStartedAg
     if (!exists("main.pid")) time.advance(std::chrono::seconds(1));
   });
   supervision.died = [&](const Ended& ended, bool) {
-    EXPECT_TRUE(ended.hung);
+    EXPECT_TRUE(ended.hung_s);
     ++deaths;
   };
   run_together({script("main", "exit 0")}, "main", limits, supervision);

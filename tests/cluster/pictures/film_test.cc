@@ -116,8 +116,6 @@ TEST_F(Film, HasTenFramesForEachSecondOfItsClips) {
 TEST_F(Film, ThatCannotBeWrittenIsNamedAndLeavesNothing) {
   EXPECT_THAT([&] { write_short("/nowhere/film.mp4"); },
               ThrowsMessage<Failure>(HasSubstr("/nowhere/film.mp4")));
-  EXPECT_THAT([&] { write_short(temporary_.path() / "film.unknown"); },
-              ThrowsMessage<Failure>(HasSubstr("ffmpeg cannot write")));
   EXPECT_EQ(files(), 0u);
 }
 
@@ -125,7 +123,7 @@ TEST_F(Film, SaysThatItNeedsFfmpeg) {
   const std::string path = getenv("PATH");
   setenv("PATH", "/nowhere", 1);
   EXPECT_THAT([&] { write_short(temporary_.path() / "film.mp4"); },
-              ThrowsMessage<Failure>(HasSubstr("no ffmpeg")));
+              ThrowsMessage<Failure>(HasSubstr("ffmpeg is not installed")));
   setenv("PATH", path.c_str(), 1);
   EXPECT_EQ(files(), 0u);
 }

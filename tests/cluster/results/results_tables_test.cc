@@ -130,5 +130,23 @@ TEST(HindsightTable, WithoutCollisionsThereAreNoShares) {
   EXPECT_EQ(table.rows[0][5].text, "0.00");
 }
 
+TEST(WorldText, SaysInWhichTrafficAndAtWhichStep) {
+  RunConfig config;
+  config.traffic.blind_rate_per_s = 0.01;
+  EXPECT_THAT(
+      world_text(config),
+      testing::AllOf(testing::HasSubstr(" vehicles within "),
+                     testing::HasSubstr("0.01 a second move into its lane without looking"),
+                     testing::HasSubstr("A step is 1 s, collisions are looked for every 1 s.")));
+  config.traffic.blind_rate_per_s = 0.0;
+  config.traffic.objects_per_km = 4.0;
+  config.simulation.substeps = 5;
+  config.dynamics.world = WorldKind::kSlip;
+  EXPECT_THAT(world_text(config), testing::AllOf(testing::HasSubstr("all of them look"),
+                                                 testing::HasSubstr("4 objects per km"),
+                                                 testing::HasSubstr("dynamics.world = \"slip\""),
+                                                 testing::HasSubstr("every 0.2 s")));
+}
+
 }  // namespace
 }  // namespace corridor::cluster

@@ -33,6 +33,34 @@ TEST(Display, InAFileLinesFollowEachOtherEveryTenSeconds) {
   EXPECT_EQ(read_file(path), "one\ntwo\nstays\nthree\n");
 }
 
+TEST(Display, OnATerminalThatKnowsNoControlSequencesLinesFollowEachOther) {
+  const int master = posix_openpt(O_RDWR | O_NOCTTY);
+  ASSERT_GE(master, 0);
+  ASSERT_EQ(grantpt(master), 0);
+  ASSERT_EQ(unlockpt(master), 0);
+  const File out(std::fopen(ptsname(master), "w"), std::fclose);
+  ASSERT_TRUE(out);
+  setenv("TERM", "dumb", 1);
+  {
+    ProgressDisplay display(out.get());
+    display.show({"one"}, 100.0);
+    display.show({"two"}, 111.0);
+  }
+  unsetenv("TERM");
+  char text[100];
+  const ssize_t count = read(master, text, sizeof text);
+  EXPECT_EQ(std::string(text, static_cast<std::size_t>(count)), "one\r\ntwo\r\n");
+  close(master);
+}
+
+TEST(Display, WhereNothingCanBeWrittenNothingIsThrown) {
+  const File out(std::fopen("/dev/full", "w"), std::fclose);
+  ProgressDisplay display(out.get());
+  EXPECT_NO_THROW(display.show({"one"}, 100.0));
+  EXPECT_NO_THROW(display.announce("two"));
+  EXPECT_NE(std::ferror(out.get()), 0);
+}
+
 // A pseudo terminal of 10 columns: what is written to it comes out at its other end.
 TEST(Display, OnATerminalLinesAreWrittenOverAgainAndNoneWraps) {
   const int master = posix_openpt(O_RDWR | O_NOCTTY);
@@ -48,6 +76,7 @@ TEST(Display, OnATerminalLinesAreWrittenOverAgainAndNoneWraps) {
   const winsize size{25, 10, 0, 0};
   ASSERT_EQ(ioctl(master, TIOCSWINSZ, &size), 0);
 
+  setenv("TERM", "xterm", 1);
   {
     ProgressDisplay display(out.get());
     display.show({"one", "longer than ten"}, 0.0);

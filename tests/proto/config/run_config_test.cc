@@ -63,6 +63,11 @@ TEST(RunConfig, KeysOfEveryTypeAreRead) {
   EXPECT_EQ(config.run.host, "node-1.example.org");
 }
 
+TEST(RunConfig, AWholeNumberMayBeWrittenWithAnExponent) {
+  EXPECT_EQ(parse("[mop]\nsteps = 2e6\n").phase(Phase::kMop).steps, 2'000'000);
+  EXPECT_EQ(parse("[run]\nactors = 3.0\n").run.actors, 3);
+}
+
 TEST(RunConfig, WhatIsWrittenIsReadEqual) {
   const RunConfig config = parse(
       "", {"traffic.blind_rate_per_s=0.1", "mop.learning_rate=3.3e-4", "bp.adam_epsilon=1e-12",
@@ -125,7 +130,8 @@ TEST_P(BadValue, IsRefused) {
 INSTANTIATE_TEST_SUITE_P(
     RunConfig, BadValue,
     testing::Values(
-        Bad{"run.actors=2.0", "whole number"}, Bad{"run.actors=true", "whole number"},
+        Bad{"run.actors=2.5", "whole number"}, Bad{"mop.steps=1e300", "whole number"},
+        Bad{"mop.steps=inf", "whole number"}, Bad{"run.actors=true", "whole number"},
         Bad{"run.actors=\"2\"", "whole number"}, Bad{"run.actors=[2]", "whole number"},
         Bad{"run.actors=1025", "1 to 1024"}, Bad{"run.seed=-1", "0 to 9223372036854775806"},
         Bad{"road.lanes=4294967299", "1 to 8"},  // 3 in 32 bits
@@ -136,7 +142,7 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"mop.double_q=1", "true or false"}, Bad{"mop.double_q=yes", "true or false"},
         Bad{"mop.hidden=64", "a list of numbers"}, Bad{"mop.hidden=[]", "1 to 8 numbers"},
         Bad{"mop.hidden=[64, 0]", "each a whole number from 1 to 4096"},
-        Bad{"mop.hidden=[64, 64.0]", "each a whole number"},
+        Bad{"mop.hidden=[64, 64.5]", "each a whole number"},
         Bad{"mop.hidden=[1,2,3,4,5,6,7,8,9]", "1 to 8 numbers"},
         Bad{"planner.speed_changes_mps=[0, nan]", "each a number"},
         Bad{"evaluation.seeds=[]", "1 to 1000 numbers"},

@@ -56,6 +56,15 @@ TEST_F(CheckpointsTest, ThereIsNoneAtFirst) {
               HasSubstr("/proc/self/status"));
 }
 
+TEST_F(CheckpointsTest, WhatPeoplePutBesideThemStays) {
+  for (const char* name : {"7.damaged", "8.partial", "best", "7.copy", "notes.txt"}) {
+    fs::create_directory(directory_.path() / name);
+  }
+  add(9);
+  EXPECT_THAT(names_in(directory_.path()),
+              UnorderedElementsAre("9", "best", "7.copy", "notes.txt"));
+}
+
 TEST_F(CheckpointsTest, TheLargestRoundIsTheNewestAndOldOnesAreRemoved) {
   for (const std::uint64_t round : {7, 9, 10, 100}) add(round);
   EXPECT_EQ(checkpoints_.newest(), of(100));

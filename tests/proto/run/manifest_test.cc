@@ -32,6 +32,43 @@ TEST_F(Manifest, IsReadAsItWasWritten) {
   EXPECT_EQ(manifest_.scenario_name(), "fake");
 }
 
+TEST_F(Manifest, HasWhatATrainingWentOnWithOtherwise) {
+  EXPECT_EQ(manifest_.versions_now(), manifest_.versions);
+  RunVersions other = manifest_.versions;
+  other.sumo = "1.18.0";
+  manifest_.continuations = {{7, other, {"sumo 1.18.0, where it was 1.15.0"}}};
+  write_manifest(run_, manifest_);
+  EXPECT_EQ(read_manifest(run_), manifest_);
+  EXPECT_EQ(read_manifest(run_).versions_now(), other);
+}
+
+TEST_F(Manifest, NamesTheVersionsOnWhichBitsDepend) {
+  const RunVersions before = manifest_.versions;
+  RunVersions now = before;
+  now.git_commit = "another";
+  now.blas_core = "Haswell";
+  EXPECT_EQ(changed_versions(before, now).size(), 0u) << "a run that does not say the kernels";
+  now.sumo = "1.18.0";
+  RunVersions then = before;
+  then.blas_core = "Prescott";
+  const std::vector<ChangedVersion> changed = changed_versions(then, now);
+  ASSERT_EQ(changed.size(), 2u);
+  EXPECT_EQ(changed[0].name, "sumo");
+  EXPECT_EQ(changed[0].now, "1.18.0");
+  EXPECT_EQ(changed[1].before, "Prescott");
+}
+
+TEST_F(Manifest, OfAnExportedRunLetsResultsGoBelowTheWorkingDirectory) {
+  write_manifest(run_, manifest_);
+  EXPECT_EQ(results_folder(run_), run_.root());
+  manifest_.fingerprint = "0123456789abcdef";
+  write_manifest(run_, manifest_);
+  EXPECT_EQ(results_folder(run_), "evaluated/run");
+  manifest_.trained = "/somewhere";
+  write_manifest(run_, manifest_);
+  EXPECT_EQ(results_folder(run_), run_.root()) << "it holds results itself";
+}
+
 TEST_F(Manifest, OfTheTrainedNetworksInTheRepositoryIsWrittenAgainWithTheSameBytes) {
   const auto trained =
       RunDirectory::open(std::filesystem::path(CORRIDOR_SOURCE_DIR) / "scenarios/trained/paper");

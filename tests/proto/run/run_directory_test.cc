@@ -63,5 +63,36 @@ TEST_F(Runs, AreOpenedWithoutAChangeAndGetTheFoldersTheyLackWhenAsked) {
   EXPECT_TRUE(fs::is_directory(logs));
 }
 
+TEST_F(Runs, LeaveAloneWhatOthersWriteWhenTheyAreCleanedUp) {
+  const RunDirectory run = create();
+  const fs::path ours[] = {root_ / "config.toml.tmp-7", run.metrics("learner.tmp-7"),
+                           run.checkpoints() / "7.partial" / "x"};
+  const fs::path theirs[] = {run.episodes() / "a.json.tmp-7",
+                             root_ / "scenarios" / ".x.tmp-7-0" / "x",
+                             root_ / "drives" / "a.png.tmp-7", root_ / "report" / "x.partial"};
+  for (const auto& file : ours) {
+    create_folders(file.parent_path());
+    write_file(file, "");
+  }
+  for (const auto& file : theirs) {
+    create_folders(file.parent_path());
+    write_file(file, "");
+  }
+  run.remove_leftovers();
+  for (const auto& file : ours) EXPECT_FALSE(fs::exists(file)) << file;
+  for (const auto& file : theirs) EXPECT_TRUE(fs::exists(file)) << file;
+}
+
+TEST_F(Runs, ThatAreNewAppearWhole) {
+  NewRun first(root_), second(root_);
+  write_file(first.directory().config(), "");
+  write_file(first.directory().manifest(), "first");
+  EXPECT_FALSE(fs::exists(root_));
+  EXPECT_TRUE(first.publish());
+  EXPECT_FALSE(second.publish());
+  EXPECT_EQ(read_file(RunDirectory::open(root_).manifest()), "first");
+  EXPECT_THAT(failure_of([&] { NewRun{root_}; }), HasSubstr("continue it with `corridor resume"));
+}
+
 }  // namespace
 }  // namespace corridor

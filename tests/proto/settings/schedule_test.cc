@@ -61,9 +61,19 @@ TEST(Schedule, StepsAndProgressCountWithinThePhase) {
   EXPECT_EQ(schedule.phase_steps_after(4), 1000);
   EXPECT_EQ(schedule.phase_steps_after(5), 200);
   EXPECT_EQ(schedule.phase_steps_after(7), 600);
-  EXPECT_EQ(schedule.phase_progress(0), 0.0);
-  EXPECT_EQ(schedule.phase_progress(4), 0.8);
-  EXPECT_EQ(schedule.phase_progress(5), 0.0);
+  EXPECT_EQ(schedule.annealed(0), 0.0);
+  EXPECT_EQ(schedule.annealed(4), 0.8);
+  EXPECT_EQ(schedule.annealed(5), 0.0);
+}
+
+TEST(Schedule, WhatIsAnnealedOverOtherStepsThanThePhasesStaysAtItsEnd) {
+  RunConfig config = small();
+  config.dqn[0].annealing_steps = 400;  // two of five rounds
+  const Schedule schedule(config);
+  EXPECT_EQ(schedule.annealed(1), 0.5);
+  EXPECT_EQ(schedule.annealed(2), 1.0);
+  EXPECT_EQ(schedule.annealed(4), 1.0);
+  EXPECT_EQ(schedule.annealed(5), 0.0) << "the other phase's";
 }
 
 TEST(Schedule, ARoundIsDrivenWithTheWeightsOfTheBlockBeforeTheLast) {

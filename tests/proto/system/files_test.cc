@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "proto/system/files.h"
 
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <csignal>
+#include <fstream>
+#include <thread>
 
 #include "proto/base/json.h"
 #include "tests/support/failure_of.h"
@@ -79,24 +84,130 @@ TEST_F(Files, ThatAreNoJsonAreNamed) {
               AllOf(HasSubstr(file_.string()), HasSubstr("is not JSON")));
 }
 
-TEST_F(Files, FoldersInTheMakingGoUnlessTheyAreKept) {
+TEST_F(Files, FoldersAreMadeWithTheirParentsAndNamedWhereTheyCannotBe) {
   const fs::path folder = directory_.path() / "a" / "b";
   const char* const children[] = {"c", "d/e"};
-  {
-    create_folders(folder, children);
-    const FolderInTheMaking made(folder);
-    write_file(folder / "d" / "e" / "file", "");
-  }
-  EXPECT_FALSE(fs::exists(folder));
-  EXPECT_TRUE(fs::exists(folder.parent_path()));
-  {
-    create_folders(folder);
-    FolderInTheMaking made(folder);
-    made.keep();
-  }
-  EXPECT_TRUE(fs::exists(folder));
+  create_folders(folder, children);
+  EXPECT_TRUE(fs::is_directory(folder / "c"));
+  EXPECT_TRUE(fs::is_directory(folder / "d" / "e"));
   write_file(file_, "");
   EXPECT_THAT(failure_of([&] { create_folders(file_ / "below"); }), HasSubstr("cannot create"));
+}
+
+class NewFolders : public Files {
+ protected:
+  // One with `content` in a file.
+  static bool publish(const fs::path& target, const std::string& content) {
+    NewFolder folder(target);
+    write_file(folder.path() / "file", content);
+    write_file(folder.path() / "last", "");
+    return folder.publish("last");
+  }
+
+  fs::path target_ = directory_.path() / "a" / "b";
+};
+
+TEST_F(NewFolders, GetTheirNameWholeOrNotAtAll) {
+  {
+    NewFolder folder(target_);
+    write_file(folder.path() / "file", "");
+    EXPECT_FALSE(fs::exists(target_));
+  }
+  EXPECT_THAT(names_in(target_.parent_path()), testing::IsEmpty()) << "not published: gone";
+  EXPECT_TRUE(publish(target_ / "", "one"));
+  EXPECT_THAT(names_in(target_.parent_path()), UnorderedElementsAre("b"));
+  EXPECT_THAT(names_in(target_), UnorderedElementsAre("file", "last"));
+}
+
+TEST_F(NewFolders, LeaveAloneWhatSomebodyElseHasMade) {
+  EXPECT_TRUE(publish(target_, "theirs"));
+  EXPECT_FALSE(publish(target_, "ours"));
+  EXPECT_EQ(read_file(target_ / "file"), "theirs");
+  EXPECT_THAT(names_in(target_.parent_path()), UnorderedElementsAre("b"));
+  write_file(file_, "theirs");
+  EXPECT_FALSE(publish(file_, "ours"));
+  EXPECT_EQ(read_file(file_), "theirs");
+}
+
+TEST_F(NewFolders, TakeAFolderThatIsEmptyAndKeepIt) {
+  create_folders(target_);
+  struct stat before {
+  }, after{};
+  ASSERT_EQ(stat(target_.c_str(), &before), 0);
+  EXPECT_TRUE(publish(target_, "one"));
+  ASSERT_EQ(stat(target_.c_str(), &after), 0);
+  EXPECT_EQ(before.st_ino, after.st_ino) << "a shell may stand in it";
+  EXPECT_THAT(names_in(target_), UnorderedElementsAre("file", "last"));
+}
+
+TEST_F(NewFolders, OfWhichOneComesFirst) {
+  NewFolder one(target_), two(target_);
+  write_file(one.path() / "file", "one");
+  write_file(two.path() / "file", "two");
+  EXPECT_TRUE(two.publish());
+  EXPECT_FALSE(one.publish());
+  EXPECT_EQ(read_file(target_ / "file"), "two");
+}
+
+using OutputFiles = Files;
+
+TEST_F(OutputFiles, AreReplacedWholeAlsoWhereALinkLeadsToThem) {
+  const fs::path link = directory_.path() / "link";
+  fs::create_symlink("file", link);
+  OutputFile(link).write("new");
+  EXPECT_TRUE(fs::is_symlink(link));
+  EXPECT_EQ(read_file(file_), "new") << "the link led nowhere yet";
+  OutputFile(link).write("newer");
+  EXPECT_TRUE(fs::is_symlink(link));
+  EXPECT_EQ(read_file(file_), "newer");
+}
+
+TEST_F(OutputFiles, ThatArePipesAreWrittenThrough) {
+  ASSERT_EQ(mkfifo(file_.c_str(), 0600), 0);
+  std::string read;
+  std::thread reader([&] { read = read_file(file_); });
+  OutputFile(file_).write("all of it");
+  reader.join();
+  EXPECT_EQ(read, "all of it");
+  EXPECT_TRUE(fs::is_fifo(file_));
+}
+
+TEST_F(OutputFiles, OfAShellsDescriptorsAreWrittenThrough) {
+  const Descriptor open_for(open(file_.c_str(), O_RDWR | O_CREAT, 0600));
+  ASSERT_EQ(write(open_for.get(), "before\n", 7), 7);
+  OutputFile(fs::path("/dev/fd") / std::to_string(open_for.get())).write("after\n");
+  EXPECT_EQ(read_file(file_), "before\nafter\n");
+  EXPECT_TRUE(fs::is_symlink("/dev/fd/0"));
+}
+
+TEST_F(OutputFiles, ThatCannotBeWrittenAreRefusedBeforeTheWork) {
+  EXPECT_THAT(failure_of([&] { OutputFile{directory_.path()}; }), HasSubstr("it is a directory"));
+  EXPECT_THAT(failure_of([] { OutputFile{"/nowhere/file"}; }),
+              AllOf(HasSubstr("/nowhere/file"), HasSubstr("No such file")));
+  EXPECT_THAT(failure_of([] { OutputFile("/dev/full").write("x"); }), HasSubstr("No space left"));
+}
+
+TEST_F(Files, WithoutANameAreReadByTheirPathAndLeaveNothing) {
+  fs::path path;
+  {
+    UnnamedFile file;
+    file.append("one ");
+    file.append("two");
+    EXPECT_EQ(file.content(), "one two");
+    EXPECT_EQ(read_file(file.path()), "one two");
+    path = file.path();
+  }
+  EXPECT_FALSE(fs::exists(path));
+}
+
+TEST_F(Files, InAPlainlyNamedFolderAreThoseOfTheFolder) {
+  const fs::path folder = directory_.path() / "lr=0.1,seed=2:${HOME} 50%d";
+  create_folders(folder);
+  const PlainlyNamedFolder plain(folder);
+  EXPECT_EQ(plain.path().string().find_first_of(",:$% "), std::string::npos);
+  std::ofstream(plain.path() / "file") << "found";
+  EXPECT_EQ(read_file(folder / "file"), "found");
+  EXPECT_THAT(failure_of([&] { PlainlyNamedFolder{folder / "no"}; }), HasSubstr("cannot open"));
 }
 
 }  // namespace

@@ -5,6 +5,8 @@
 
 #include <cstdlib>
 
+#include "proto/base/failure.h"
+
 namespace corridor {
 namespace {
 
@@ -29,6 +31,12 @@ TEST(Incarnation, IsOfTheStartThatTheEnvironmentSays) {
   EXPECT_EQ(draw_incarnation() >> 32, 0u);
   unsetenv(name.c_str());
   EXPECT_EQ(draw_incarnation() >> 32, 0u);
+}
+
+TEST(FolderIdentity, IsTheFoldersOwnByWhateverPath) {
+  EXPECT_EQ(folder_identity("/usr"), folder_identity("/usr/bin/.."));
+  EXPECT_NE(folder_identity("/usr"), folder_identity("/"));
+  EXPECT_THROW(folder_identity("/nowhere"), Failure);
 }
 
 TEST(HostName, IsNeverEmpty) { EXPECT_FALSE(host_name().empty()); }

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "proto/system/program.h"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <csignal>
+#include <cstdio>
 
 #include "proto/base/failure.h"
 #include "proto/system/log.h"
@@ -38,7 +40,7 @@ TEST(ProgramDeathTest, AnyOtherExceptionToo) {
 }
 
 TEST(ProgramDeathTest, SignalsAskToStopAndDoNotEndTheProcess) {
-  for (const int signal : {SIGTERM, SIGINT}) {
+  for (const int signal : kStopSignals) {
     EXPECT_EXIT(run([signal] {
                   if (stop_requested()) return 1;
                   std::raise(signal);
@@ -47,6 +49,50 @@ TEST(ProgramDeathTest, SignalsAskToStopAndDoNotEndTheProcess) {
                 }),
                 ExitedWithCode(128 + signal), "");
   }
+}
+
+TEST(ProgramDeathTest, ASignalThatItWasStartedToIgnoreIsIgnored) {
+  std::signal(SIGHUP, SIG_IGN);  // as nohup does
+  EXPECT_EXIT(run([] {
+                std::raise(SIGHUP);
+                if (stop_requested() || !was_ignored(SIGHUP)) return 1;
+                std::raise(SIGTERM);
+                return stop_requested() ? 0 : 2;
+              }),
+              ExitedWithCode(128 + SIGTERM), "");
+  std::signal(SIGHUP, SIG_DFL);
+}
+
+TEST(ProgramDeathTest, WhatIsStoppedHalfwaySaysSoInOneLine) {
+  EXPECT_EXIT(run([]() -> int {
+                throw_if_stopped();
+                std::raise(SIGINT);
+                throw_if_stopped();
+                return 0;
+              }),
+              ExitedWithCode(128 + SIGINT),
+              "^corridor-test: stopped by a signal \\(Interrupt\\)\n$");
+}
+
+TEST(ProgramDeathTest, OutputThatIsLostIsAFailure) {
+  EXPECT_EXIT((std::freopen("/dev/full", "w", stdout), run([] {
+                 std::puts("the table");
+                 return 0;
+               })),
+              ExitedWithCode(1), "cannot write all of standard output: No space left on device");
+}
+
+TEST(ProgramDeathTest, AFailureIsOneLineWhateverNamesItSpeaksOf) {
+  EXPECT_EXIT(run([]() -> int { throw Failure("no file a\nb"); }), ExitedWithCode(1),
+              "^corridor-test: error: no file a.nb\n$");
+}
+
+TEST(ProgramDeathTest, NoFileOfOursGetsTheNumberOfAClosedStream) {
+  EXPECT_EXIT((close(STDIN_FILENO), close(STDOUT_FILENO), run([] {
+                 const int opened = open("/dev/null", O_RDONLY);
+                 return opened > STDERR_FILENO ? 0 : 2;
+               })),
+              ExitedWithCode(0), "");
 }
 
 TEST(ProgramDeathTest, LogLinesHaveTimeNameLevelAndText) {

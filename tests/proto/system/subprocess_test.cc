@@ -6,11 +6,13 @@
 #include <sys/stat.h>
 #include <sys/wait.h>
 
+#include <csignal>
 #include <cstdlib>
 #include <fstream>
 #include <thread>
 
 #include "proto/base/failure.h"
+#include "proto/system/program.h"
 #include "tests/support/temporary_directory.h"
 
 namespace corridor {
@@ -62,6 +64,22 @@ TEST(Subprocess, ThatClosesItsOutputsAndWorksOnIsWaitedFor) {
   std::thread opener([&] { std::ofstream(pipe) << "end\n"; });
   EXPECT_EQ(shell("exec >&- 2>&-; read line < " + pipe.string() + "; exit 4").status, 4);
   opener.join();
+}
+
+TEST(Subprocess, RunsInTheDirectoryThatItIsGiven) {
+  testing_support::TemporaryDirectory temporary;
+  const auto result = run_subprocess("/bin/sh", {"-c", "pwd -P"}, "", kLong, temporary.path());
+  EXPECT_EQ(result->output, std::filesystem::canonical(temporary.path()).string() + "\n");
+}
+
+TEST(SubprocessDeathTest, EndsWithASignalToThisProcess) {
+  EXPECT_EXIT(std::exit(run_program(
+                  "test",
+                  [] {
+                    run_subprocess("/bin/sh", {"-c", "kill -INT $PPID; exec sleep 600"}, "", kLong);
+                    return 0;
+                  })),
+              testing::ExitedWithCode(128 + SIGINT), "stopped by a signal");
 }
 
 TEST(Subprocess, ThatCannotBeStartedIsNamed) {

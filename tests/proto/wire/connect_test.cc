@@ -16,18 +16,19 @@ TEST(Addresses, OfTcpAreTheConfiguredPorts) {
   RunSettings settings;
   settings.transport = Transport::kTcp;
   settings.host = "node";
-  const Addresses where = addresses(settings, std::string(32, 'a'));
+  const Addresses where = addresses(settings, std::string(32, 'a'), "/");
   EXPECT_EQ(where.replay, "tcp://node:5701");
   EXPECT_EQ(where.learner, "tcp://node:5702");
 }
 
 TEST(Addresses, OfIpcDifferByRunAndDoNotShowItsId) {
   const std::string one(32, 'a'), two(32, 'b');
-  const Addresses where = addresses({}, one);
+  const Addresses where = addresses({}, one, "/");
   EXPECT_THAT(where.replay, testing::StartsWith("ipc://@corridor-"));
   EXPECT_NE(where.replay, where.learner);
-  EXPECT_NE(where.replay, addresses({}, two).replay);
-  EXPECT_EQ(where.replay, addresses({}, one).replay);
+  EXPECT_NE(where.replay, addresses({}, two, "/").replay);
+  EXPECT_NE(where.replay, addresses({}, one, "/proc").replay) << "a copy of its directory";
+  EXPECT_EQ(where.replay, addresses({}, one, "/usr/..").replay) << "the same, by another path";
   EXPECT_EQ(where.replay.find(one.substr(0, 8)), std::string::npos);
   EXPECT_LT(where.replay.size(), 100U);  // a Unix socket's name has 107
 }
