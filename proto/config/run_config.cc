@@ -40,6 +40,12 @@ std::string place_of(const toml::source_location& location) {
 }
 std::string place_of(const toml::value& value) { return place_of(value.location()); }
 
+std::string joined(const std::vector<std::string>& parts) {
+  std::string text;
+  for (const std::string& part : parts) text += (text.empty() ? "" : ", ") + part;
+  return text;
+}
+
 // On one line. The TOML library's own writer lays values out differently in every version.
 std::string written(const toml::value& value) {
   std::vector<std::string> parts;
@@ -47,20 +53,20 @@ std::string written(const toml::value& value) {
     case toml::value_t::boolean:
       return toml_of(value.as_boolean());
     case toml::value_t::integer:
-      return fmt::format("{}", value.as_integer());
+      return std::to_string(value.as_integer());
     case toml::value_t::floating:
       return toml_of(value.as_floating());
     case toml::value_t::string:
       return Json(text_of(value)).dump(-1, ' ', false, Json::error_handler_t::replace);
     case toml::value_t::array:
       for (const toml::value& element : value.as_array()) parts.push_back(written(element));
-      return fmt::format("[{}]", fmt::join(parts, ", "));
+      return '[' + joined(parts) + ']';
     case toml::value_t::table:
       for (const auto& [key, member] : value.as_table()) {
-        parts.push_back(fmt::format("{} = {}", key, written(member)));
+        parts.push_back(key + " = " + written(member));
       }
       std::ranges::sort(parts);
-      return fmt::format("{{{}}}", fmt::join(parts, ", "));
+      return '{' + joined(parts) + '}';
     default:  // dates and times
       return toml::format(value);
   }
