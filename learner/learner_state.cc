@@ -39,7 +39,7 @@ class Reader {
 
  private:
   template <typename T>
-  std::vector<T> sized(const std::string& name, std::size_t size) const {
+  const std::vector<T>& sized(const std::string& name, std::size_t size) const {
     const std::vector<T>& values = tensors_.get<T>(name, file_);
     if (values.size() != size) {
       throw Failure("{}: '{}' has {} values, config.toml asks for {}; was config.toml changed?",

@@ -51,7 +51,7 @@ std::string written(const toml::value& value) {
     case toml::value_t::boolean:
       return toml_of(value.as_boolean());
     case toml::value_t::integer:
-      return fmt::format("{}", value.as_integer());
+      return std::to_string(value.as_integer());
     case toml::value_t::floating:
       return toml_of(value.as_floating());
     case toml::value_t::string:
@@ -61,7 +61,7 @@ std::string written(const toml::value& value) {
       return fmt::format("[{}]", listed(parts));
     case toml::value_t::table:
       for (const auto& [key, member] : value.as_table()) {
-        parts.push_back(fmt::format("{} = {}", key, written(member)));
+        parts.push_back(key + " = " + written(member));
       }
       std::ranges::sort(parts);
       return fmt::format("{{{}}}", listed(parts));

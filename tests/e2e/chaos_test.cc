@@ -26,7 +26,7 @@ TEST(Chaos, HoweverItIsDisturbedATrainingEndsWithTheSameBits) {
   settings.deadline_s = 200.0;
   const ChaosResult result = train_in_chaos(settings, [](const Footprint&) {});
   EXPECT_EQ(result.trouble, "");
-  EXPECT_EQ(result.fingerprint + "\n", fingerprint(undisturbed));
+  EXPECT_EQ(result.fingerprint, fingerprint(undisturbed));
   EXPECT_EQ(shared_memory_files(), shared_memory);
   int disturbances = 0;
   for (const auto& [what, count] : result.disturbances) disturbances += count;

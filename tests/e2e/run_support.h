@@ -59,7 +59,7 @@ inline std::vector<std::string> train_command(const std::filesystem::path& run,
 inline std::string fingerprint(const std::filesystem::path& run) {
   const CommandResult result = run_command({kCorridor, "fingerprint", run}, kDeadline_s);
   EXPECT_EQ(result.status, 0) << result.output;
-  return result.output;
+  return result.output.substr(0, result.output.find('\n'));
 }
 
 // Nothing of a run may outlive its command: no process, no socket or temporary file in the run
