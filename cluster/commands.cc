@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "cluster/check.h"
+#include "cluster/completion.h"
 #include "cluster/drive.h"
 #include "cluster/evaluate.h"
 #include "cluster/experiment.h"
@@ -43,6 +44,8 @@ struct Arguments {
   std::string world;
   std::string episode;
   std::filesystem::path exported;
+  const CLI::App* command_line = nullptr;
+  std::string format;
 };
 
 void declare_settings(CLI::App& app, std::vector<std::string>& settings) {
@@ -246,6 +249,11 @@ const Command kCommands[] = {
        app.add_option("FILE", a.scenario, "scenario file (TOML)")->required();
      },
      [](const Arguments& a) { return check(a.scenario); }},
+    {"completion", "Print a completion script, or a manual page",
+     "corridor completion bash > ~/.local/share/bash-completion/completions/corridor\n"
+     "  corridor completion man > corridor.1",
+     [](CLI::App& app, Arguments& a) { declare_completion(app, a.format); },
+     [](const Arguments& a) { return completion(*a.command_line, a.format); }},
 };
 
 }  // namespace
@@ -257,6 +265,7 @@ int run_command(int argc, const char* const* argv) {
   app.footer("`corridor COMMAND --help` tells more, with examples.");
   Arguments arguments;
   arguments.program = argv[0];
+  arguments.command_line = &app;
   for (const Command& command : kCommands) {
     CLI::App* declared = app.add_subcommand(command.name, command.summary);
     declared->set_version_flag("--version", kVersion, "print the version");
