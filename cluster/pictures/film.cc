@@ -222,7 +222,7 @@ Canvas Frames::at(double time_s) const {
 void write_film(const std::vector<Clip>& clips, const fs::path& file,
                 const std::function<void(double)>& progress) {
   const auto ffmpeg = find_program("ffmpeg");
-  if (!ffmpeg) throw Failure("no ffmpeg: films need it (cluster/setup installs it)");
+  if (!ffmpeg) throw Failure("no ffmpeg: films need it (Debian's package ffmpeg)");
   double all_s = 0.0;
   for (const Clip& clip : clips) all_s += clip.duration_s();
   FrameFile pictures(file);
