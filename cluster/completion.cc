@@ -2,6 +2,10 @@
 #include "cluster/completion.h"
 
 #include <algorithm>
+#include <cctype>
+#include <functional>
+#include <iterator>
+#include <map>
 #include <sstream>
 #include <string_view>
 #include <vector>
@@ -36,7 +40,7 @@ std::vector<std::string> names_of(const CLI::Option& option) {
 
 bool takes_value(const CLI::Option& option) { return option.get_items_expected_max() > 0; }
 
-bool is_path(const CLI::Option& option) { return option.get_type_name() == kPathType; }
+bool is_path(const CLI::Option& option) { return option.get_type_name().starts_with(kPathType); }
 
 // The words that there are for an option's value, with spaces between; empty where it is free.
 std::string words_for(const CLI::Option& option) {
@@ -93,34 +97,18 @@ std::string cases_of(const CLI::App& command) {
          case_of(fmt::format("\"{} \"*", command.get_name()), options_of(command), arguments);
 }
 
-// What the text means as roff.
+// The text, without anything that has a meaning to roff.
 std::string roff(std::string_view text) {
+  static const std::map<char, const char*> kNames = {
+      {'\\', "\\e"},  {'-', "\\-"},   {'`', "\\(ga"}, {'\'', "\\(aq"},
+      {'"', "\\(dq"}, {'~', "\\(ti"}, {'^', "\\(ha"}};
   std::string result;
   for (const char c : text) {
-    switch (c) {
-      case '\\':
-        result += "\\e";
-        break;
-      case '-':
-        result += "\\-";
-        break;
-      case '`':
-        result += "\\(ga";
-        break;
-      case '\'':
-        result += "\\(aq";
-        break;
-      case '"':
-        result += "\\(dq";
-        break;
-      case '~':
-        result += "\\(ti";
-        break;
-      case '^':
-        result += "\\(ha";
-        break;
-      default:
-        result += c;
+    const auto name = kNames.find(c);
+    if (name == kNames.end()) {
+      result += c;
+    } else {
+      result += name->second;
     }
   }
   // A dot at a line's start would be a request.
@@ -216,7 +204,7 @@ complete -F _{0} {0}
 }
 
 std::string man_page(const CLI::App& app) {
-  const std::string name = app.get_name();
+  const std::string& name = app.get_name();
   std::string title = name;
   std::ranges::transform(title, title.begin(), [](unsigned char c) { return std::toupper(c); });
   std::string page =
