@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "cluster/check.h"
+#include "cluster/completion.h"
 #include "cluster/drive.h"
 #include "cluster/evaluate.h"
 #include "cluster/experiment.h"
@@ -44,6 +45,8 @@ struct Arguments {
   std::string world;
   std::string episode;
   std::filesystem::path exported;
+  const CLI::App* command_line = nullptr;
+  std::string format;
 };
 
 void declare_settings(CLI::App& app, std::vector<std::string>& settings) {
@@ -261,6 +264,11 @@ const Command kCommands[] = {
        declare_settings(app, a.settings);
      },
      [](const Arguments& a) { return check(a.scenario, a.settings); }},
+    {"completion", "Print a completion script, or a manual page",
+     "corridor completion bash > ~/.local/share/bash-completion/completions/corridor\n"
+     "  corridor completion man > corridor.1",
+     [](CLI::App& app, Arguments& a) { declare_completion(app, a.format); },
+     [](const Arguments& a) { return completion(*a.command_line, a.format); }},
 };
 
 // A first word that is no command.
@@ -283,6 +291,7 @@ int run_command(int argc, const char* const* argv) {
   app.footer("`corridor COMMAND --help` tells more, with examples.");
   Arguments arguments;
   arguments.program = argv[0];
+  arguments.command_line = &app;
   if (argc > 1) refuse_unknown(argv[1]);
   for (const Command& command : kCommands) {
     CLI::App* declared = app.add_subcommand(command.name, command.summary);

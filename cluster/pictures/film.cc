@@ -202,7 +202,8 @@ Canvas Frames::at(double time_s) const {
 std::filesystem::path find_ffmpeg() {
   if (const auto program = find_program("ffmpeg")) return *program;
   throw Failure(
-      "ffmpeg is not installed, and it makes the film: install ffmpeg, or ask for --no-film");
+      "ffmpeg is not installed, and it makes the film: install it (Debian: apt-get install "
+      "ffmpeg), or ask for --no-film");
 }
 
 void write_film(const std::vector<Clip>& clips, const fs::path& file,

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // toml11, the TOML library, where its versions 3 (Debian 12) and 4 (Debian 13) differ; what is
 // written here once is the same with both. Private to proto/config.
 #pragma once

@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <sstream>
 #include <string>
@@ -11,6 +12,18 @@
 #include "proto/base/failure.h"
 #include "proto/base/text.h"
 #include "proto/system/program.h"
+
+namespace corridor {
+
+// What help calls the value of an option that is a path: shells complete it as one.
+inline constexpr const char* kPathType = "PATH";
+
+}  // namespace corridor
+
+template <>
+constexpr const char* CLI::detail::type_name<std::filesystem::path>() {
+  return corridor::kPathType;
+}
 
 namespace corridor {
 

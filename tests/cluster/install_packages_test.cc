@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The script cluster/install_packages, on machines that are made up: dpkg-query, apt-get, apt-cache
 // and id are scripts of ours.
 #include <gmock/gmock.h>
