@@ -196,7 +196,7 @@ const Command kCommands[] = {
      [](CLI::App& app, Arguments& a) {
        declare_run(app, a.resume.run);
        declare_settings(app, a.resume.settings);
-       app.add_flag("--allow-other-bits", a.resume.allow_other_bits,
+       app.add_flag(kAllowOtherBits, a.resume.allow_other_bits,
                     "go on with other libraries than so far; the manifest says so");
      },
      [](const Arguments& a) { return resume(a.resume, a.program); }},

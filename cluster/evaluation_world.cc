@@ -99,22 +99,22 @@ EvaluationPlace evaluation_place(const std::filesystem::path& run, const Evaluat
   const RunDirectory given = RunDirectory::open(run);
   const RunDirectory trained = trained_run(given);
   EvaluationPlace place{trained, given, load_run_config(given.config())};
-  std::filesystem::path results = out.empty() ? results_folder(given) : out;
+  const std::filesystem::path root = out.empty() ? results_folder(given) : out;
+  std::error_code missing;
+  if (!std::filesystem::equivalent(root, given.root(), missing)) {
+    place.directory = results_directory(root, trained, place.config);
+  }
   if (!world.is_own()) {
-    place.config = load_run_config(trained.config());
+    const RunConfig trained_as = load_run_config(trained.config());
     const std::string name =
         world.name(world.scenario.empty() ? read_manifest(trained).scenario_name() : "");
-    const int lanes = place.config.road.lanes;
-    place.config = config_in(place.config, world, name);
-    if (place.config.road.lanes != lanes) {
+    place.config = config_in(trained_as, world, name);
+    if (place.config.road.lanes != trained_as.road.lanes) {
       throw Failure("{} has {} lanes, and the networks of {} were trained on {}", name,
-                    place.config.road.lanes, run.string(), lanes);
+                    place.config.road.lanes, run.string(), trained_as.road.lanes);
     }
-    results = RunDirectory::scenarios(results) / name;
-  }
-  std::error_code missing;
-  if (!std::filesystem::equivalent(results, given.root(), missing)) {
-    place.directory = results_directory(results, trained, place.config);
+    place.directory =
+        results_directory(RunDirectory::scenarios(root) / name, trained, place.config);
   }
   check_writable(place.directory);
   return place;

@@ -66,7 +66,7 @@ std::int64_t steps_to_repeat(const RunDirectory& directory, const Schedule& sche
 }
 
 // As its config.toml says, which all processes read.
-int supervise(const RunDirectory& directory, std::uint64_t rounds_before,
+int supervise(const RunDirectory& directory, std::uint64_t rounds_before, bool allow_other_bits,
               const std::string& program) {
   const RunConfig config = load_run_config(directory.config());
   const Schedule schedule(config);
@@ -94,8 +94,8 @@ int supervise(const RunDirectory& directory, std::uint64_t rounds_before,
                                  rounds > 0 ? "the checkpoint of " + position(schedule, rounds)
                                             : std::string("the beginning")));
   };
-  const int signal =
-      run_together(training_plan(config.run, directory), kLearnerName, limits, supervision);
+  const int signal = run_together(training_plan(config.run, directory, allow_other_bits),
+                                  kLearnerName, limits, supervision);
   monitor.tick(monotonic_s());
 
   const std::uint64_t rounds = rounds_done(directory);
@@ -163,14 +163,9 @@ void change_settings(const ResumeOptions& options, const RunDirectory& directory
 void change_versions(const ResumeOptions& options, const RunManifest& manifest,
                      const RunVersions& here, Changes& changes) {
   const RunVersions& before = manifest.versions_now();
-  for (const ChangedVersion& version : changed_versions(before, here)) {
-    changes.lines.push_back(
-        fmt::format("{} {}, where it was {}", version.name, version.now, version.before));
-    if (options.allow_other_bits) continue;
-    throw Failure(
-        "{} is trained with {} {}, and here is {}: its bits would become others; "
-        "--allow-other-bits goes on all the same, and the manifest says so",
-        options.run.string(), version.name, version.before, version.now);
+  for (std::string& line :
+       allowed_changes(changed_versions(before, here), options.allow_other_bits)) {
+    changes.lines.push_back(std::move(line));
   }
   if (before.git_commit == here.git_commit) return;
   fmt::print("corridor is of commit {}, where the run was trained with {}\n", here.git_commit,
@@ -180,8 +175,11 @@ void change_versions(const ResumeOptions& options, const RunManifest& manifest,
 // The settings to go on with, which config.toml then says, and the manifest what its bits depend
 // on.
 RunConfig changed_config(const ResumeOptions& options, const RunDirectory& directory,
-                         const RunVersions& here) {
+                         RunVersions here) {
   RunManifest manifest = read_manifest(directory);
+  // The learner compares these.
+  here.blas_core = manifest.versions_now().blas_core;
+  here.blas_config = manifest.versions_now().blas_config;
   Changes changes;
   change_settings(options, directory, changes);
   const bool longer = !changes.lines.empty();
@@ -241,7 +239,7 @@ int train(const TrainOptions& options, const std::string& program, const Version
 
   fmt::print("{}: {} actors, seed {}; logs in {}\n", directory.root().string(), config.run.actors,
              config.run.seed, (directory.root() / "log").string());
-  return supervise(directory, 0, program);
+  return supervise(directory, 0, /*allow_other_bits=*/false, program);
 }
 
 int resume(const ResumeOptions& options, const std::string& program, const Versions& versions) {
@@ -267,7 +265,7 @@ int resume(const ResumeOptions& options, const std::string& program, const Versi
   fmt::print("{}: {}: {}; {} steps after it are repeated\n", run,
              rounds > 0 ? "goes on from the checkpoint of" : "no checkpoint yet, begins anew",
              position(schedule, rounds), grouped(steps_to_repeat(directory, schedule, rounds)));
-  return supervise(directory, rounds, program);
+  return supervise(directory, rounds, options.allow_other_bits, program);
 }
 
 }  // namespace corridor::cluster

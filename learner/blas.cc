@@ -7,7 +7,10 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <optional>
 #include <system_error>
+
+#include "proto/system/processors.h"
 
 namespace corridor::learner {
 namespace {
@@ -20,18 +23,16 @@ std::string call(const char* name) {
   return text == nullptr ? std::string() : std::string(text);
 }
 
-constexpr const char* kCoreVariable = "OPENBLAS_CORETYPE";
-constexpr const char* kPortableCore = "Haswell";
-
 }  // namespace
 
 void use_portable_kernels(char** argv) {
-  if (std::getenv(kCoreVariable) != nullptr) return;
-  if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("fma")) return;
+  const std::optional<std::string> kernels = portable_kernels();
+  if (!kernels) return;
   std::error_code error;
   const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", error);
   if (error) return;
-  setenv(kCoreVariable, kPortableCore, 1);
+  const std::size_t equals = kernels->find('=');
+  setenv(kernels->substr(0, equals).c_str(), kernels->c_str() + equals + 1, 1);
   execv(program.c_str(), argv);  // returns on failure: then on with the kernels at hand
 }
 

@@ -8,10 +8,8 @@
 
 namespace corridor::learner {
 
-// OpenBLAS takes the kernels that suit the processor, and different kernels round differently. This
-// starts the program anew with Haswell's, which every x86-64 processor with AVX2 and FMA has, so
-// that equal seeds give equal bits on all of them; unless OPENBLAS_CORETYPE is set, or the
-// processor has none. Call it first of all in main.
+// Starts the program anew with portable_kernels (proto/system/processors.h), unless its starter has
+// seen to them already: to load it takes a second. Call it first of all in main.
 void use_portable_kernels(char** argv);
 
 struct Blas {

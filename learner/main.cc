@@ -7,8 +7,8 @@
 #include "learner/replay_client.h"
 #include "learner/td_networks.h"
 #include "learner/training.h"
-#include "proto/base/json.h"
 #include "proto/config/run_config.h"
+#include "proto/run/checkpoints.h"
 #include "proto/run/manifest.h"
 #include "proto/run/metrics.h"
 #include "proto/run/run_directory.h"
@@ -25,28 +25,41 @@ namespace {
 
 using namespace corridor;
 
-// What the bits and the speed depend on: the manifest has it, from `corridor`, which asks for it.
-void log_libraries(Device device) {
-  const learner::Blas blas = learner::blas_in_use();
+void log_libraries(const learner::Blas& blas, Device device) {
   log_info("LibTorch {} on {}, BLAS {} {}", learner::libtorch_version(), name_of(device),
            blas.library, blas.core);
   const std::string warning = learner::warning_about(blas);
   if (!warning.empty()) log_warning(warning);
 }
 
-void print_versions() {
-  const learner::Blas blas = learner::blas_in_use();
-  const LearnerVersions versions{learner::libtorch_version(), blas.core, blas.config};
-  fmt::print("{}\n", json_of(versions).dump());
+// The bits depend on its kernels, which only who has loaded it knows: the manifest says with which
+// the run is trained. Throws Failure when it was with others and that is not allowed.
+void record_kernels(const learner::Blas& blas, const RunDirectory& directory, bool allowed) {
+  RunManifest manifest = read_manifest(directory);
+  RunVersions here = manifest.versions_now();
+  here.blas_core = blas.core;
+  here.blas_config = blas.config;
+  if (here == manifest.versions_now()) return;
+  const std::vector<ChangedVersion> changed = changed_versions(manifest.versions_now(), here);
+  if (changed.empty()) {
+    manifest.versions_now() = here;
+  } else {
+    if (!manifest.continuations) manifest.continuations.emplace();
+    manifest.continuations->push_back(
+        {rounds_done(directory), here, allowed_changes(changed, allowed)});
+  }
+  write_manifest(directory, manifest);
 }
 
-int run(const std::string& root) {
+int run(const std::string& root, bool allow_other_bits) {
   learner::use_one_torch_thread();
   const RunDirectory directory = RunDirectory::open(root);
   const RunConfig config = load_run_config(directory.config());
   const std::string run_id = read_manifest(directory).run_id;
   learner::check_device(config.run.device);
-  log_libraries(config.run.device);
+  const learner::Blas blas = learner::blas_in_use();
+  log_libraries(blas, config.run.device);
+  record_kernels(blas, directory, allow_other_bits);
 
   learner::LearnerState state = learner::load_state(config, directory);
   MetricsWriter metrics(directory.metrics(kLearnerName));
@@ -75,13 +88,11 @@ int main(int argc, char** argv) {
   learner::use_portable_kernels(argv);
   CLI::App app("The learner of a corridor run; `corridor` starts it.");
   std::string root;
-  bool versions = false;
-  auto* const asked = app.add_flag(kVersionsOption, versions, "print what the bits depend on");
-  app.add_option("RUN_DIRECTORY", root, "the run, as `corridor train` made it")->excludes(asked);
+  bool allow_other_bits = false;
+  app.add_flag(kAllowOtherBits, allow_other_bits, "go on with other kernels of BLAS");
+  app.add_option("RUN_DIRECTORY", root, "the run, as `corridor train` made it")->required();
   return run_program(kLearnerProgram, [&] {
-    if (const auto done = parse_command_line(app, kLearnerProgram, argc, argv)) return *done;
-    if (!versions) return run(root);
-    print_versions();
-    return 0;
+    const auto done = parse_command_line(app, kLearnerProgram, argc, argv);
+    return done ? *done : run(root, allow_other_bits);
   });
 }

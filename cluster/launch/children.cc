@@ -42,6 +42,7 @@ std::vector<std::string> environment_of(const Pulse& pulse, std::uint32_t starts
   // The processes share the cores already: threads of their own would only get in each other's way.
   std::vector<std::string> result = {"OMP_NUM_THREADS=1", "OPENBLAS_NUM_THREADS=1",
                                      pulse.environment(), start_environment(starts)};
+  if (const auto kernels = portable_kernels()) result.push_back(*kernels);
   for (char** entry = environ; *entry != nullptr; ++entry) {
     const std::string_view text = *entry;
     if (!text.starts_with("OMP_NUM_THREADS=") && !text.starts_with("OPENBLAS_NUM_THREADS=")) {

@@ -8,9 +8,7 @@
 #include <fstream>
 #include <thread>
 
-#include "cluster/launch/plan.h"
 #include "proto/base/failure.h"
-#include "proto/base/json.h"
 #include "proto/config/run_config.h"
 #include "proto/run/run_directory.h"
 #include "proto/system/identity.h"
@@ -55,16 +53,6 @@ std::string sumo_version() {
   return text.substr(start, text.find_first_of(" \n", start) - start);
 }
 
-LearnerVersions learner_versions() {
-  const std::string program = program_path(kLearnerProgram);
-  const auto said = run_subprocess(program, {kVersionsOption}, "", kPatience);
-  if (!said || said->status != 0) {
-    throw Failure("{} does not say its versions: {}; is the build complete?", program,
-                  said ? said->errors.substr(0, said->errors.find('\n')) : "it hangs");
-  }
-  return parse_record<LearnerVersions>(parse_json(said->output, program), program, "its versions");
-}
-
 // Which library Debian's alternatives have the learner load.
 std::string blas_library() {
   std::error_code missing;
@@ -79,9 +67,8 @@ std::string draw_run_id() {
 }
 
 RunVersions versions_here() {
-  const LearnerVersions learner = learner_versions();
-  return {kVersion,       CORRIDOR_GIT_COMMIT, sumo_version(),    learner.libtorch,
-          blas_library(), CORRIDOR_COMPILER,   learner.blas_core, learner.blas_config};
+  return {kVersion,       CORRIDOR_GIT_COMMIT, sumo_version(), CORRIDOR_TORCH_VERSION,
+          blas_library(), CORRIDOR_COMPILER};
 }
 
 RunManifest describe_run(const std::string& run_id, std::uint64_t seed,

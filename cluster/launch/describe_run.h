@@ -15,8 +15,7 @@ namespace corridor::cluster {
 // 32 hex digits from the system's generator: who knows them belongs to the run.
 std::string draw_run_id();
 
-// What is installed here. Asks netconvert and the learner. Throws Failure when the learner cannot
-// be started.
+// What is installed here, but for what the learner alone knows. Asks netconvert.
 RunVersions versions_here();
 
 // Of a run that begins now, here.

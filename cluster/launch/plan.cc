@@ -1,19 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cluster/launch/plan.h"
 
+#include "proto/run/manifest.h"
+
 namespace corridor::cluster {
 
 std::string program_path(const char* name) {
   return std::filesystem::read_symlink("/proc/self/exe").replace_filename(name);
 }
 
-std::vector<ProcessPlan> training_plan(const RunSettings& settings, const RunDirectory& directory) {
+std::vector<ProcessPlan> training_plan(const RunSettings& settings, const RunDirectory& directory,
+                                       bool allow_other_bits) {
   const auto server = [&](const char* name, const char* program) {
     return ProcessPlan{
         name, {program_path(program), directory.root().string()}, directory.log(name)};
   };
   std::vector<ProcessPlan> plan = {server(kReplayName, kReplayProgram),
                                    server(kLearnerName, kLearnerProgram)};
+  if (allow_other_bits) plan.back().argv.emplace_back(kAllowOtherBits);
   for (int i = 0; i < settings.actors; ++i) {
     plan.push_back(actor_process(actor_name(i), TrainTask{i}, directory));
     // The replay server knows where it stood.

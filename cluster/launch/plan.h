@@ -26,7 +26,8 @@ std::string program_path(const char* name);
 
 // Replay server, learner, and actors 0 .. actors-1. The learner ends by itself when all is done,
 // and is to be stopped before the others, since its checkpoint needs them.
-std::vector<ProcessPlan> training_plan(const RunSettings& settings, const RunDirectory& directory);
+std::vector<ProcessPlan> training_plan(const RunSettings& settings, const RunDirectory& directory,
+                                       bool allow_other_bits = false);
 
 // An actor by itself; its log is the directory's of that name.
 ProcessPlan actor_process(const std::string& name, const ActorTask& task,

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "proto/run/manifest.h"
 
+#include <type_traits>
+#include <utility>
+
 #include "proto/base/failure.h"
 #include "proto/base/text.h"
 #include "proto/system/files.h"
@@ -33,6 +36,24 @@ std::vector<ChangedVersion> changed_versions(const RunVersions& before, const Ru
 
 const RunVersions& RunManifest::versions_now() const {
   return continuations && !continuations->empty() ? continuations->back().versions : versions;
+}
+RunVersions& RunManifest::versions_now() {
+  return const_cast<RunVersions&>(std::as_const(*this).versions_now());
+}
+
+std::vector<std::string> allowed_changes(const std::vector<ChangedVersion>& changed, bool allowed) {
+  std::vector<std::string> lines;
+  for (const auto& [name, before, now] : changed) {
+    if (!allowed) {
+      throw Failure(
+          "this run was trained with {} {}, and here is {}: its bits would become others; {} goes "
+          "on "
+          "all the same, and the manifest says so",
+          name, before, now, kAllowOtherBits);
+    }
+    lines.push_back(fmt::format("{} {}, where it was {}", name, now, before));
+  }
+  return lines;
 }
 
 void RunManifest::check() const {

@@ -21,8 +21,8 @@ struct RunVersions {
   std::string libtorch;
   std::string blas;
   std::string compiler;
-  // Of OpenBLAS, by which the learner computes: its kernels, and its version and options. Runs of
-  // earlier versions do not say.
+  // Of OpenBLAS, by which the learner computes: its kernels, and its version and options. The
+  // learner fills them in when it starts; runs of earlier versions do not say.
   std::optional<std::string> blas_core = {};
   std::optional<std::string> blas_config = {};
 
@@ -40,21 +40,6 @@ struct RunVersions {
   bool operator==(const RunVersions&) const = default;
 };
 
-// What the learner alone knows of them, which it prints when it is asked.
-inline constexpr const char* kVersionsOption = "--versions";
-struct LearnerVersions {
-  std::string libtorch;
-  std::string blas_core;
-  std::string blas_config;
-
-  template <typename Self, typename Field>
-  static void fields(Self& self, Field field) {
-    field("libtorch", self.libtorch);
-    field("blas_core", self.blas_core);
-    field("blas_config", self.blas_config);
-  }
-};
-
 // Bits depend on all of it but the commit, which may have changed anything or nothing.
 struct ChangedVersion {
   std::string name;  // "libtorch"
@@ -62,6 +47,12 @@ struct ChangedVersion {
   std::string now;
 };
 std::vector<ChangedVersion> changed_versions(const RunVersions& before, const RunVersions& now);
+
+// What lets a run go on with other versions.
+inline constexpr const char* kAllowOtherBits = "--allow-other-bits";
+// Throws Failure naming the first of `changed`, unless they are allowed. Lines of all for a
+// Continuation.
+std::vector<std::string> allowed_changes(const std::vector<ChangedVersion>& changed, bool allowed);
 
 // Where a training went on otherwise than it began, on request.
 struct Continuation {
@@ -115,6 +106,7 @@ struct RunManifest {
   }
   // What it was trained with last.
   const RunVersions& versions_now() const;
+  RunVersions& versions_now();
   void check() const;
   bool operator==(const RunManifest&) const = default;
 };

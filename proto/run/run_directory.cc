@@ -70,7 +70,7 @@ void RunDirectory::remove_leftovers() const {
     for (const auto& entry : fs::directory_iterator(root_)) look(entry);
     for (const fs::path& folder : {network().parent_path(), root_ / "log", root_ / "metrics",
                                    checkpoints(), tensorboard()}) {
-      if (!fs::exists(folder)) continue;
+      if (!fs::is_directory(folder)) continue;
       for (const auto& entry : fs::recursive_directory_iterator(folder)) look(entry);
     }
     for (const fs::path& path : doomed) fs::remove_all(path);

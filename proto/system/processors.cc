@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <fstream>
 #include <sstream>
 
@@ -85,6 +86,13 @@ ProcessorTime processor_time_of(pid_t pid) {
   const std::size_t state = line.rfind(") ");
   time.runnable = state != std::string::npos && line.substr(state + 2, 1) == "R";
   return time;
+}
+
+std::optional<std::string> portable_kernels() {
+  const char* const variable = "OPENBLAS_CORETYPE";
+  if (std::getenv(variable) != nullptr) return std::nullopt;
+  if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("fma")) return std::nullopt;
+  return fmt::format("{}=Haswell", variable);
 }
 
 }  // namespace corridor

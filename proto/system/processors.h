@@ -30,4 +30,10 @@ struct ProcessorTime {
 };
 ProcessorTime processor_time_of(pid_t pid);
 
+// "OPENBLAS_CORETYPE=Haswell": what has OpenBLAS compute alike on every x86-64 processor with AVX2
+// and FMA, where it would take the kernels that suit the processor, which round differently. To be
+// in the environment when OpenBLAS is loaded. Nothing where the variable is set already, or this
+// processor has none of these.
+std::optional<std::string> portable_kernels();
+
 }  // namespace corridor
