@@ -1,5 +1,6 @@
-// Fingerprints of trainings, on record by what their bits depend on: SUMO's traffic, and OpenBLAS
-// with its kernels. A learner on the CPU computes without LibTorch.
+// Fingerprints of trainings, on record by what their bits may depend on: SUMO's traffic, and OpenBLAS
+// with its kernels. Of Debian 12 and 13 only SUMO matters: compiler, C library and OpenBLAS may be
+// either's (docs/operations.md), and on the CPU a learner computes without LibTorch.
 #pragma once
 
 #include <filesystem>
@@ -41,6 +42,7 @@ inline std::optional<std::string> golden_fingerprint(const Libraries& libraries)
     const char* fingerprint;
   } kOnRecord[] = {
       {{"1.15.0", "OpenBLAS 0.3.21", "Haswell"}, "caf0e003bbc79f39"},  // Debian 12
+      {{"1.18.0", "OpenBLAS 0.3.29", "Haswell"}, "3473357b49beec8a"},  // Debian 13
   };
   for (const auto& record : kOnRecord) {
     if (record.libraries == libraries) return record.fingerprint;
