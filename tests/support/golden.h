@@ -1,7 +1,7 @@
 // Fingerprints of trainings, on record by what their bits may depend on: SUMO's traffic, and
-// OpenBLAS with its kernels. On the CPU a learner computes without LibTorch. Debian 12's learner and
-// replay server give Debian 13's bits beside Debian 13's actor (docs/operations.md): compiler, C
-// library and OpenBLAS do not matter to them.
+// OpenBLAS with its kernels. On the CPU a learner computes without LibTorch. Debian 12's learner
+// and replay server give Debian 13's bits beside Debian 13's actor (docs/operations.md): compiler,
+// C library and OpenBLAS do not matter to them.
 #pragma once
 
 #include <filesystem>
