@@ -92,14 +92,17 @@ void check_planners(const std::vector<std::string>& planners) {
   for (const std::string& planner : planners) planner_pair(planner);
 }
 
-// A scenario's file, and settings behind it, separated by spaces.
+// A scenario's file, whose name may have spaces in it, and settings behind it, separated by spaces.
 EvaluationWorld parse_world(const std::string& text, const std::filesystem::path& folder) {
-  std::istringstream words(text);
-  std::string file;
-  words >> file;
-  EvaluationWorld world{folder / file};
-  for (std::string setting; words >> setting;) world.settings.push_back(setting);
-  return world;
+  std::vector<std::string> settings;
+  std::string file = text.substr(0, text.find_last_not_of(' ') + 1);
+  for (std::size_t space = file.rfind(' ');
+       space != std::string::npos && file.find('=', space) != std::string::npos;
+       space = file.rfind(' ')) {
+    settings.insert(settings.begin(), file.substr(space + 1));
+    file.erase(file.find_last_not_of(' ', space) + 1);
+  }
+  return {folder / file, settings};
 }
 
 TrainingArm parse_training(TableReader& table, const std::filesystem::path& folder,

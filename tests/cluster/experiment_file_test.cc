@@ -80,6 +80,24 @@ TEST_F(ExperimentFile, SaysWhatIsTrainedAndWhereItIsEvaluated) {
   EXPECT_THAT(second.training_seeds, ElementsAre(7));
 }
 
+TEST_F(ExperimentFile, AScenariosPathMayHaveSpaces) {
+  std::filesystem::create_directory(temporary_.path() / "my clone, ü");
+  write_file(temporary_.path() / "my clone, ü" / "c.toml", "");
+  const Experiment experiment = load(
+      kHead +
+      "[[training]]\n"
+      "name = \"x\"\n"
+      "scenario = \"my clone, ü/c.toml\"\n"
+      "evaluate_in = [\"my clone, ü/c.toml\", \"my clone, ü/c.toml  run.seed=4 road.lanes=3 \"]\n");
+  const auto& worlds = experiment.trainings[0].evaluate_in;
+  ASSERT_EQ(worlds.size(), 2u);
+  for (const auto& world : worlds) {
+    EXPECT_EQ(world.scenario, temporary_.path() / "my clone, ü" / "c.toml");
+  }
+  EXPECT_TRUE(worlds[0].settings.empty());
+  EXPECT_THAT(worlds[1].settings, ElementsAre("run.seed=4", "road.lanes=3"));
+}
+
 TEST_F(ExperimentFile, WhatIsWrongIsNamedWithFileAndKey) {
   EXPECT_THAT(failure_of("planners = "), HasSubstr("not valid TOML"));
   EXPECT_THAT(failure_of(kHead), HasSubstr("[[training]] is missing"));

@@ -288,13 +288,14 @@ TEST_F(BadInput, AFullOrReadOnlyDiskEndsTheRunWithAClearLineAndItGoesOnWhenItCan
   const fs::path undisturbed = temporary.path() / "undisturbed";
   ASSERT_EQ(run_command(train_command(undisturbed), kDeadline_s).status, 0);
 
-  const std::string resume = kCorridor + " resume " + (disk / "run").string();
+  const std::string corridor = "'" + kCorridor + "'";
+  const std::string resume = corridor + " resume " + (disk / "run").string();
   const std::string remount = "mount -o remount,";
   const std::string again = resume + "; echo \"status $?\"; ";
   std::vector<std::string> command = in_namespace(
       mount + "1m none " + disk.string() + "; \"$@\"; echo \"status $?\"; " + again + remount +
       "size=100m,ro " + disk.string() + "; " + again + remount + "rw " + disk.string() + "; " +
-      again + kCorridor + " fingerprint " + (disk / "run").string());
+      again + corridor + " fingerprint " + (disk / "run").string());
   for (const auto& argument : train_command(disk / "run")) command.push_back(argument);
   const CommandResult result = run_command(command, kDeadline_s);
 

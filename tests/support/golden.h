@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Fingerprints of trainings, on record by what their bits depend on: SUMO's traffic, and OpenBLAS
-// with its kernels. A learner on the CPU computes without LibTorch.
+// Fingerprints of trainings, on record by what their bits may depend on: SUMO's traffic, and
+// OpenBLAS with its kernels. On the CPU a learner computes without LibTorch. Debian 12's learner
+// and replay server give Debian 13's bits beside Debian 13's actor (docs/operations.md): compiler,
+// C library and OpenBLAS do not matter to them.
 #pragma once
 
 #include <filesystem>
@@ -39,6 +41,7 @@ inline std::optional<std::string> golden_fingerprint(const Libraries& libraries)
     const char* fingerprint;
   } kOnRecord[] = {
       {{"1.15.0", "OpenBLAS 0.3.21", "Haswell"}, "caf0e003bbc79f39"},  // Debian 12
+      {{"1.18.0", "OpenBLAS 0.3.29", "Haswell"}, "3473357b49beec8a"},  // Debian 13
   };
   for (const auto& record : kOnRecord) {
     if (record.libraries == libraries) return record.fingerprint;

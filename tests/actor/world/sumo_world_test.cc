@@ -85,8 +85,8 @@ TEST_F(SumoWorldTest, DISABLED_PrintsWhatItDrove) {
 }
 
 std::string drive_in_another_process() {
-  const std::string command = fs::read_symlink("/proc/self/exe").string() +
-                              " --gtest_also_run_disabled_tests"
+  const std::string command = "'" + fs::read_symlink("/proc/self/exe").string() +
+                              "' --gtest_also_run_disabled_tests"
                               " --gtest_filter=SumoWorldTest.DISABLED_PrintsWhatItDrove";
   FILE* pipe = popen(command.c_str(), "r");
   std::string text;

@@ -22,19 +22,19 @@ using testing::ThrowsMessage;
 class RunLockTest : public testing::Test {
  protected:
   testing_support::TemporaryDirectory temporary_;
-  RunDirectory directory_ = RunDirectory::create(temporary_.path() / "run");
+  const std::filesystem::path& folder_ = temporary_.path();
 };
 
 TEST_F(RunLockTest, ARunThatIsGoingOnIsRefusedNamingItsOwner) {
-  const Descriptor lock = lock_folder(directory_.root());
-  EXPECT_THAT([&] { const Descriptor second = lock_folder(directory_.root()); },
+  const Descriptor lock = lock_folder(folder_);
+  EXPECT_THAT([&] { const Descriptor second = lock_folder(folder_); },
               ThrowsMessage<Failure>(AllOf(HasSubstr("is going on"),
                                            HasSubstr("process " + std::to_string(getpid())))));
 }
 
 TEST_F(RunLockTest, IsFreeAgainAfterwards) {
-  lock_folder(directory_.root()).close();
-  EXPECT_NO_THROW(lock_folder(directory_.root()).close());
+  lock_folder(folder_).close();
+  EXPECT_NO_THROW(lock_folder(folder_).close());
 }
 
 TEST_F(RunLockTest, StaysWithTheProcessesOfALauncherThatDied) {
@@ -44,7 +44,7 @@ TEST_F(RunLockTest, StaysWithTheProcessesOfALauncherThatDied) {
   const pid_t launcher = fork();
   if (launcher == 0) {
     close(ends[1]);
-    const Descriptor lock = lock_folder(directory_.root());
+    const Descriptor lock = lock_folder(folder_);
     if (fork() == 0) {
       char byte;
       _exit(read(ends[0], &byte, 1) == 0 ? 0 : 1);
@@ -52,10 +52,10 @@ TEST_F(RunLockTest, StaysWithTheProcessesOfALauncherThatDied) {
     _exit(0);
   }
   waitpid(launcher, nullptr, 0);
-  EXPECT_THAT([&] { lock_folder(directory_.root(), std::chrono::milliseconds(0)).close(); },
+  EXPECT_THAT([&] { lock_folder(folder_, std::chrono::milliseconds(0)).close(); },
               ThrowsMessage<Failure>(HasSubstr("processes that it started still live")));
   close(ends[1]);
-  EXPECT_NO_THROW(lock_folder(directory_.root(), std::chrono::seconds(20)).close());
+  EXPECT_NO_THROW(lock_folder(folder_, std::chrono::seconds(20)).close());
   close(ends[0]);
 }
 
