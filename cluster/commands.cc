@@ -272,14 +272,14 @@ const Command kCommands[] = {
 };
 
 // A first word that is no command.
-void refuse_unknown(const char* word) {
+void refuse_unknown(const char* word, const std::string& program) {
   if (word[0] == '-' || std::ranges::any_of(kCommands, [&](const Command& command) {
         return std::string_view(command.name) == word;
       })) {
     return;
   }
-  throw Failure("there is no command '{}': choose among {}", word,
-                listed(kCommands, ", ", &Command::name));
+  throw Failure("there is no command '{}', but {}; see {} --help", word,
+                listed(kCommands, ", ", &Command::name), program);
 }
 
 }  // namespace
@@ -292,7 +292,7 @@ int run_command(int argc, const char* const* argv) {
   Arguments arguments;
   arguments.program = argv[0];
   arguments.command_line = &app;
-  if (argc > 1) refuse_unknown(argv[1]);
+  if (argc > 1) refuse_unknown(argv[1], arguments.program);
   for (const Command& command : kCommands) {
     CLI::App* declared = app.add_subcommand(command.name, command.summary);
     declared->set_version_flag("--version", kVersion, "print the version");

@@ -73,7 +73,7 @@ int drive(const DriveOptions& options) {
   if (options.film) find_ffmpeg();
   const EvaluationPlace place = evaluation_place(options.run, options.world);
   const fs::path out = options.out.empty() ? place.directory.root() / "drives" : options.out;
-  create_folders(out);
+  check_folder_for_results(out);
   std::vector<Clip> clips;
   std::string name;
   if (options.collisions) {
@@ -98,6 +98,7 @@ int drive(const DriveOptions& options) {
   }
   for (Clip& clip : clips) clip.speed_changes_mps = place.config.planner.speed_changes_mps;
 
+  create_folders(out);
   const fs::path film = out / (name + ".mp4"), sheet = out / (name + ".png"),
                  player = out / (name + ".html");
   write_file(sheet, contact_sheet(clips, options.interval_s).png());

@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cluster/evaluation_world.h"
 
-#include <unistd.h>
-
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
 
 #include "proto/base/failure.h"
 #include "proto/config/config_values.h"
@@ -74,14 +70,6 @@ RunDirectory trained_run(const RunDirectory& given) {
   return trained ? RunDirectory::open(*trained) : given;
 }
 
-void check_writable(const RunDirectory& directory) {
-  const std::filesystem::path folder = directory.episodes();
-  if (std::filesystem::exists(folder) && access(folder.c_str(), W_OK) != 0) {
-    throw Failure("cannot write to {}: {}; --out DIR puts results elsewhere", folder.string(),
-                  std::strerror(errno));
-  }
-}
-
 }  // namespace
 
 std::string EvaluationWorld::name(const std::string& own) const {
@@ -116,7 +104,7 @@ EvaluationPlace evaluation_place(const std::filesystem::path& run, const Evaluat
     place.directory =
         results_directory(RunDirectory::scenarios(root) / name, trained, place.config);
   }
-  check_writable(place.directory);
+  check_folder_for_results(place.directory.episodes());
   return place;
 }
 

@@ -17,11 +17,11 @@ namespace {
 
 constexpr double kPrintScale = 2.0;
 
-// Made where it is missing. A page that is there is replaced if it is an earlier report.
+// That can be written to. A page that is there is replaced if it is an earlier report.
 std::filesystem::path report_folder(const ReportOptions& options) {
   std::filesystem::path out =
       options.out.empty() ? open_results(options.runs.front()).root() / "report" : options.out;
-  create_folders(out);
+  check_folder_for_results(out);
   const std::filesystem::path page = out / "report.html";
   if (!options.out.empty() && std::filesystem::exists(page) &&
       read_file(page).find(kGenerator) == std::string::npos) {
@@ -53,6 +53,7 @@ int report(const ReportOptions& options) {
   }
   const std::string page = report_page(groups, training, episodes);
 
+  create_folders(out);
   const std::filesystem::path page_file = out / "report.html";
   for (const auto* figures : {&training, &episodes}) {
     for (const DrawnFigure& drawn : *figures) {

@@ -105,6 +105,16 @@ bool is_empty_folder(const fs::path& path) {
   return fs::is_directory(path, error) && fs::is_empty(path, error) && !error;
 }
 
+void check_folder_for_results(const fs::path& folder) {
+  fs::path there = fs::absolute(folder);
+  std::error_code error;
+  while (!fs::exists(there, error) && there.has_relative_path()) there = there.parent_path();
+  // With the dot, a file is no folder.
+  if (::access((there / ".").c_str(), W_OK) == 0) return;
+  throw Failure("cannot write to {}: {}; --out DIR puts results elsewhere", folder.string(),
+                reason());
+}
+
 NewFolder::NewFolder(const fs::path& target)
     : target_(fs::absolute(target).lexically_normal()), in_target_(is_empty_folder(target)) {
   if (!target_.has_filename()) target_ = target_.parent_path();  // "runs/x/"
@@ -165,8 +175,8 @@ OutputFile::OutputFile(fs::path file) : file_(std::move(file)) {
   constexpr int kLinksMax = 40;
   fs::path place = file_;
   for (int links = 0; !through_ && fs::is_symlink(place, error) && links < kLinksMax; ++links) {
+    through_ = fs::canonical(parent_of(place), error).string().starts_with("/proc/");
     place = parent_of(place) / fs::read_symlink(place, error);
-    through_ = place.string().starts_with("/proc/");
   }
   if (through_ || fs::exists(status)) {
     if (::access(file_.c_str(), W_OK) != 0) refuse(reason());

@@ -61,6 +61,10 @@ class NewFolder {
   bool in_target_ = false;
 };
 
+// Before the work: throws Failure when nothing could be written into the folder, or it is missing
+// and could not be made.
+void check_folder_for_results(const std::filesystem::path& folder);
+
 // Whether it is there and has nothing in it.
 bool is_empty_folder(const std::filesystem::path& path);
 

@@ -50,7 +50,7 @@ TEST(Commands, EveryOneHasHelpWithExamplesAndAVersion) {
 TEST(Commands, AWrongCommandLineIsOneLineThatNamesWhatIsWrongAndWhereHelpIs) {
   const std::vector<std::pair<std::vector<const char*>, const char*>> wrong = {
       {{}, "subcommand"},
-      {{"fly"}, "there is no command 'fly': choose among train, resume"},
+      {{"fly"}, "there is no command 'fly', but train, resume"},
       {{"train", "a.toml", "--run", ""}, "its value is empty"},
       {{"train", "a.toml"}, "--run"},
       {{"train", "--run", "x"}, "SCENARIO"},

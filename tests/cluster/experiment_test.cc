@@ -30,6 +30,7 @@ class ExperimentDirectory : public testing::Test {
   // A run of the experiment's that began with other settings.
   void begin_run(const RunConfig& config) {
     std::filesystem::create_directories(directory_ / "runs");
+    write_file(directory_ / "experiment.toml", text_);
     const RunDirectory run = RunDirectory::create(directory_ / "runs" / "first-1");
     write_file(run.config(), to_toml(config));
     write_manifest(run, testing_support::some_manifest(config));
@@ -53,6 +54,13 @@ TEST_F(ExperimentDirectory, OfAnotherExperimentIsRefused) {
   std::filesystem::create_directories(directory_);
   write_file(directory_ / "experiment.toml", text_ + "# of yesterday\n");
   EXPECT_THAT(failure(), HasSubstr("holds another experiment"));
+}
+
+TEST_F(ExperimentDirectory, WithSomethingElseInItIsRefusedAndNotTouched) {
+  std::filesystem::create_directories(directory_);
+  write_file(directory_ / "precious", "");
+  EXPECT_THAT(failure(), HasSubstr("has something else than an experiment in it"));
+  EXPECT_EQ(testing_support::names_in(directory_), std::vector<std::string>{"precious"});
 }
 
 TEST_F(ExperimentDirectory, WhoseRunBeganWithOtherSettingsIsRefusedByKey) {

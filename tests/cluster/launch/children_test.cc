@@ -41,6 +41,12 @@ class ChildrenTest : public testing::Test {
     EXPECT_EQ(mkfifo(path.c_str(), 0600), 0);
     return path;
   }
+  // One that has given no sign of life, and gives none: a stopped shell.
+  void start_silent(const std::string& name) {
+    children_.start(script(name, "kill -STOP $$"));
+    siginfo_t info{};
+    EXPECT_EQ(waitid(P_ALL, 0, &info, WSTOPPED), 0);
+  }
   // The next that ends, once it has.
   Ended next_end() {
     siginfo_t info{};
@@ -129,7 +135,7 @@ TEST_F(ChildrenTest, OfWhichAllOrOneGetsASignal) {
 }
 
 TEST_F(ChildrenTest, WhosePulseStandsStillForTooLongAreKilledAsHung) {
-  children_.start(script("silent", "exec sleep 600"));
+  start_silent("silent");
   const int end = pass(1000, 1029);
   EXPECT_EQ(children_.reap().has_value(), false);
   pass(end, end + 1);
@@ -143,7 +149,7 @@ TEST_F(ChildrenTest, WhosePulseStandsStillForTooLongAreKilledAsHung) {
 }
 
 TEST_F(ChildrenTest, AreNotHungWhileItIsWeWhoWereStopped) {
-  children_.start(script("silent", "exec sleep 600"));
+  start_silent("silent");
   pass(0, 20);
   children_.kill_hung(kSilence, at(5000));  // an hour on: nobody has looked
   EXPECT_EQ(children_.reap().has_value(), false);
@@ -152,7 +158,7 @@ TEST_F(ChildrenTest, AreNotHungWhileItIsWeWhoWereStopped) {
 TEST_F(ChildrenTest, GetTwiceTheTimeOnceTheyHaveBeenKilledForTheirSilence) {
   int second = 0;
   for (const int longest : {30, 60, 120, 240, 240}) {
-    children_.start(script("slow", "exec sleep 600"));
+    start_silent("slow");
     second = pass(second, second + longest - 1);
     EXPECT_EQ(children_.reap().has_value(), false) << longest;
     second = pass(second, second + 1);

@@ -55,6 +55,8 @@ TEST(RepeatingCommands, TrainAndEvaluateAsTheRunWas) {
 TEST(ReportPage, HoldsRunsFiguresTablesAndSettings) {
   RunRecord run = record(1), other = record(2);
   run.evaluations[""] = {result("rules", 1, 1000)};
+  run.worlds[""] = run.config;
+  other.worlds["dense"].traffic.vehicles_max = 77;
   other.evaluations["dense"] = {result("sumo", 1, 1000)};
   other.config.dqn[0].gamma = 0.5;
   const std::string page = report_page(
