@@ -103,10 +103,13 @@ std::string evaluation_tables(const RunGroup& group) {
   for (const auto& [world, results] : by_world) {
     html += element(
         "h3", world.empty() ? group.label : fmt::format("{}, driving in {}", group.label, world));
-    const auto driven = std::ranges::find_if(
-        group.runs, [&](const RunRecord& run) { return run.worlds.contains(world); });
-    CORRIDOR_CHECK(driven != group.runs.end(), "{}", world);
-    html += element("p", world_text(driven->worlds.at(world)));
+    const RunConfig* config = nullptr;  // its settings are the same in all runs of the group
+    for (const RunRecord& run : group.runs) {
+      const auto driven = run.worlds.find(world);
+      if (driven != run.worlds.end()) config = &driven->second;
+    }
+    CORRIDOR_CHECK(config != nullptr, "{}", world);
+    html += element("p", world_text(*config));
     for (const Table& table : results_tables(arms_of(results))) html += html_of(table);
   }
   return html;

@@ -315,8 +315,8 @@ TEST(House, EverySourceNamesItsLicense) {
   };
   check(kRoot / "CMakeLists.txt");
   check(kRoot / ".ci" / "run");
-  for (const char* folder : {"proto", "scenarios", "actor", "replay", "learner", "cluster", "docs",
-                             "tests"}) {
+  for (const char* folder :
+       {"proto", "scenarios", "actor", "replay", "learner", "cluster", "docs", "tests"}) {
     for (fs::recursive_directory_iterator entry(kRoot / folder), end; entry != end; ++entry) {
       const std::string name = fs::relative(entry->path(), kRoot).string();
       if (name == "tests/fuzz/corpus" || name == "scenarios/trained") {
