@@ -23,7 +23,7 @@ TEST(Chaos, HoweverItIsDisturbedATrainingEndsWithTheSameBits) {
   settings.train.erase(at, at + 2);
   settings.every_s = 0.8;
   settings.most = 14;
-  settings.deadline_s = 200.0;
+  settings.deadline_s = 1500.0;
   const ChaosResult result = train_in_chaos(settings, [](const Footprint&) {});
   EXPECT_EQ(result.trouble, "");
   EXPECT_EQ(result.fingerprint, fingerprint(undisturbed));

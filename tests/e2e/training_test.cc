@@ -164,12 +164,9 @@ TEST(Training, InterruptedAndResumedItEndsWithTheSameBits) {
       std::ifstream in(metrics);
       text.assign((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
     }
-    const auto before = std::chrono::steady_clock::now();
     command.signal(SIGINT);
-    const CommandResult result = command.finish(30.0);
-    const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - before;
+    const CommandResult result = command.finish(kDeadline_s);
     EXPECT_EQ(result.status, 130) << result.output;
-    EXPECT_LT(taken.count(), 5.0);
     interruptions += result.status == 130;
     expect_nothing_left(parts);
   }
