@@ -1,17 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "proto/wire/connect.h"
 
+#include <algorithm>
+
 #include "proto/base/hash.h"
 #include "proto/system/identity.h"
 
 namespace corridor {
 namespace {
 
-constexpr int kPatienceOnOneMachine = 10;
+constexpr double kPatienceOnOneMachine_s = 600.0;
 
 ClientLimits limits_of(const RunSettings& settings) {
   const double timeout_s = settings.transport == Transport::kIpc
-                               ? kPatienceOnOneMachine * settings.peer_timeout_s
+                               ? std::max(kPatienceOnOneMachine_s, settings.peer_timeout_s)
                                : settings.peer_timeout_s;
   return {.peer_timeout = std::chrono::round<Duration>(std::chrono::duration<double>(timeout_s))};
 }

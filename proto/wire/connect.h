@@ -22,8 +22,8 @@ Addresses addresses(const RunSettings& settings, const std::string& run_id,
                     const std::filesystem::path& directory);
 
 // In the background, as Client says; with the limits of [run]. Processes that talk by ipc have one
-// starter, which knows better than they who hangs and who only waits for a processor: they are ten
-// times as patient.
+// starter, which knows better than they who hangs and who only loads or waits for a processor: they
+// wait for ten minutes at least.
 Client connect_to_replay(const RunSettings& settings, const ClientIdentity& identity,
                          const std::filesystem::path& directory);
 Client connect_to_learner(const RunSettings& settings, const ClientIdentity& identity,
