@@ -172,8 +172,7 @@ void change_versions(const ResumeOptions& options, const RunManifest& manifest,
              before.git_commit);
 }
 
-// The settings to go on with, which config.toml then says, and the manifest what its bits depend
-// on.
+// The settings to go on with: config.toml then has them, the manifest what the bits depend on.
 RunConfig changed_config(const ResumeOptions& options, const RunDirectory& directory,
                          RunVersions here) {
   RunManifest manifest = read_manifest(directory);
@@ -188,9 +187,8 @@ RunConfig changed_config(const ResumeOptions& options, const RunDirectory& direc
     fmt::print(
         "the phase goes on: replay, optimiser and exploration as they are, learning rate and "
         "importance exponent at their ends. A run that was longer from the start would have had "
-        "them "
-        "higher until now, and would not have chosen its best networks, which go on, at the old "
-        "end\n");
+        "them higher until now, and would not have chosen its best networks, which go on, at the "
+        "old end\n");
   }
   if (!options.settings.empty() || longer) {
     write_file(directory.config(), to_toml(changes.config));
@@ -198,8 +196,7 @@ RunConfig changed_config(const ResumeOptions& options, const RunDirectory& direc
   if (changes.lines.empty()) return changes.config;
   for (const std::string& line : changes.lines) fmt::print("{}\n", line);
   manifest.config = to_toml(changes.config);
-  if (!manifest.continuations) manifest.continuations.emplace();
-  manifest.continuations->push_back({rounds_done(directory), here, changes.lines});
+  manifest.go_on({rounds_done(directory), here, changes.lines});
   write_manifest(directory, manifest);
   return changes.config;
 }

@@ -26,13 +26,12 @@ std::string call(const char* name) {
 }  // namespace
 
 void use_portable_kernels(char** argv) {
-  const std::optional<std::string> kernels = portable_kernels();
+  static std::optional<std::string> kernels = portable_kernels();  // the environment points there
   if (!kernels) return;
   std::error_code error;
   const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", error);
   if (error) return;
-  const std::size_t equals = kernels->find('=');
-  setenv(kernels->substr(0, equals).c_str(), kernels->c_str() + equals + 1, 1);
+  putenv(kernels->data());
   execv(program.c_str(), argv);  // returns on failure: then on with the kernels at hand
 }
 

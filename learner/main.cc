@@ -44,9 +44,7 @@ void record_kernels(const learner::Blas& blas, const RunDirectory& directory, bo
   if (changed.empty()) {
     manifest.versions_now() = here;
   } else {
-    if (!manifest.continuations) manifest.continuations.emplace();
-    manifest.continuations->push_back(
-        {rounds_done(directory), here, allowed_changes(changed, allowed)});
+    manifest.go_on({rounds_done(directory), here, allowed_changes(changed, allowed)});
   }
   write_manifest(directory, manifest);
 }

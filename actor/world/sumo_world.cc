@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <fstream>
+#include <iterator>
 #include <numbers>
 #include <utility>
 #include <xercesc/util/PlatformUtils.hpp>
@@ -47,12 +49,14 @@ std::filesystem::path folder_of(const std::filesystem::path& file) {
 
 // SUMO does not look whether what it writes gets to the disk.
 void check_complete(const std::filesystem::path& fcd_output) {
-  constexpr std::string_view kEnd = "</fcd-export>";
-  const std::string content = read_file(fcd_output);
-  if (content.find(kEnd, content.size() - std::min<std::size_t>(content.size(), 100)) !=
-      std::string::npos) {
-    return;
-  }
+  constexpr const char* kEnd = "</fcd-export>";
+  constexpr std::uintmax_t kLastBytes = 100;
+  std::error_code missing;
+  const auto size = std::filesystem::file_size(fcd_output, missing);
+  std::ifstream file(fcd_output, std::ios::binary);
+  if (!missing && size > kLastBytes) file.seekg(static_cast<std::streamoff>(size - kLastBytes));
+  const std::string last{std::istreambuf_iterator<char>(file), {}};
+  if (last.find(kEnd) != std::string::npos) return;
   throw Failure("SUMO could not write all of {}: is the disk full?", fcd_output.string());
 }
 

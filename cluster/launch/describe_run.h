@@ -23,7 +23,8 @@ RunManifest describe_run(const std::string& run_id, std::uint64_t seed,
                          const std::filesystem::path& scenario, const std::string& config_toml,
                          const RunVersions& versions);
 
-// The settings with which the run began, whatever its config.toml says now. Throws Failure.
+// The settings that the manifest holds the run to, whatever its config.toml says now. Throws
+// Failure.
 RunConfig config_at_start(const RunDirectory& directory);
 
 }  // namespace corridor::cluster

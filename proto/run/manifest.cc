@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "proto/run/manifest.h"
 
-#include <type_traits>
 #include <utility>
 
 #include "proto/base/failure.h"
@@ -16,22 +15,27 @@ constexpr std::size_t kRunIdDigits = 32;
 }  // namespace
 
 std::vector<ChangedVersion> changed_versions(const RunVersions& before, const RunVersions& now) {
-  std::vector<ChangedVersion> changed;
-  const auto compare = [&](const char* name, const auto& was, const auto& is) {
-    if constexpr (std::is_same_v<std::decay_t<decltype(was)>, std::string>) {
-      if (was != is) changed.push_back({name, was, is});
-    } else if (was && is && *was != *is) {
-      changed.push_back({name, *was, *is});
-    }
+  const auto members_of = [](const RunVersions& versions) {
+    std::vector<std::pair<std::string, std::optional<std::string>>> members;
+    RunVersions::fields(versions, [&](const char* name, const auto& value, auto...) {
+      if (static_cast<const void*>(&value) != &versions.git_commit)
+        members.emplace_back(name, value);
+    });
+    return members;
   };
-  compare("corridor", before.corridor, now.corridor);
-  compare("sumo", before.sumo, now.sumo);
-  compare("libtorch", before.libtorch, now.libtorch);
-  compare("blas", before.blas, now.blas);
-  compare("blas_core", before.blas_core, now.blas_core);
-  compare("blas_config", before.blas_config, now.blas_config);
-  compare("compiler", before.compiler, now.compiler);
+  const auto were = members_of(before), are = members_of(now);
+  std::vector<ChangedVersion> changed;
+  for (std::size_t i = 0; i < were.size(); ++i) {
+    const auto& [name, was] = were[i];
+    const auto& is = are[i].second;
+    if (was && is && *was != *is) changed.push_back({name, *was, *is});
+  }
   return changed;
+}
+
+void RunManifest::go_on(const Continuation& continuation) {
+  if (!continuations) continuations.emplace();
+  continuations->push_back(continuation);
 }
 
 const RunVersions& RunManifest::versions_now() const {
@@ -47,8 +51,7 @@ std::vector<std::string> allowed_changes(const std::vector<ChangedVersion>& chan
     if (!allowed) {
       throw Failure(
           "this run was trained with {} {}, and here is {}: its bits would become others; {} goes "
-          "on "
-          "all the same, and the manifest says so",
+          "on all the same, and the manifest says so",
           name, before, now, kAllowOtherBits);
     }
     lines.push_back(fmt::format("{} {}, where it was {}", name, now, before));

@@ -107,6 +107,7 @@ struct RunManifest {
   // What it was trained with last.
   const RunVersions& versions_now() const;
   RunVersions& versions_now();
+  void go_on(const Continuation& continuation);
   void check() const;
   bool operator==(const RunManifest&) const = default;
 };
