@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// For LD_PRELOAD: the calendar's clock of the process runs backwards, as one that is being set does
-// for a moment. Other clocks are as they are.
+// For LD_PRELOAD: the calendar's clock of the process is set back by two seconds once a second.
+// Other clocks are as they are. It does not always run backwards, because libraries of others wait
+// for it as they are loaded (UCX, which Debian 13's LibTorch loads, for a millisecond).
 #include <sys/syscall.h>
 #include <sys/time.h>
 #include <time.h>
@@ -12,7 +13,7 @@ int clock_gettime(clockid_t clock, timespec* time) noexcept {
   if (clock != CLOCK_REALTIME) return static_cast<int>(syscall(SYS_clock_gettime, clock, time));
   timespec up{};
   syscall(SYS_clock_gettime, CLOCK_MONOTONIC, &up);
-  *time = {2'000'000'000 - up.tv_sec, 999'999'999 - up.tv_nsec};
+  *time = {2'000'000'000 - up.tv_sec, up.tv_nsec};
   return 0;
 }
 
