@@ -32,9 +32,9 @@ class Shell : public testing::Test {
     fs::current_path("/");
   }
 
-  // $corridor is the command, $trained the networks of the repository.
+  // $corridor is the command, $trained the networks of the repository; neither is split at spaces.
   CommandResult shell(const std::string& script) const {
-    return run_command({"/bin/bash", "-c", script}, kDeadline_s,
+    return run_command({"/bin/bash", "-c", "IFS=; " + script}, kDeadline_s,
                        {{"corridor", kCorridor}, {"trained", kTrained}, {"smoke", kSmoke}});
   }
   // One that goes on until it is ended.
