@@ -34,8 +34,9 @@ class Shell : public testing::Test {
 
   // $corridor is the command, $trained the networks of the repository; neither is split at spaces.
   CommandResult shell(const std::string& script) const {
-    return run_command({"/bin/bash", "-c", "IFS=; " + script}, kDeadline_s,
-                       {{"corridor", kCorridor}, {"trained", kTrained}, {"smoke", kSmoke}});
+    return run_command(
+        {"/bin/bash", "-c", "IFS=; " + script}, kDeadline_s,
+        {{"corridor", kCorridor}, {"trained", kTrained}, {"smoke", kSmoke}, {"sparse", kSparse}});
   }
   // One that goes on until it is ended.
   Command start_long_training(const std::vector<std::string>& further = {}) const {
@@ -97,9 +98,7 @@ TEST_F(Shell, SixEvaluationsAtATimeAllSucceedAndLoseNothing) {
   const CommandResult result = shell(
       "for i in 1 2 3 4 5 6; do\n"
       "$corridor evaluate $trained --planners rules --seeds $i --steps 60 --jobs 1 "
-      "--scenario " +
-      kSparse +
-      " > $i.txt 2>&1 &\n"
+      "--scenario $sparse > $i.txt 2>&1 &\n"
       "ids+=($!)\n"
       "done\n"
       "for id in ${ids[@]}; do wait $id || { echo $? of $id; cat *.txt; }; done");
@@ -119,7 +118,7 @@ TEST_F(Shell, NothingIsWrittenBesideExportedNetworks) {
   const auto before = files();
   for (const std::string& command : std::vector<std::string>{
            "$corridor evaluate $trained --planners rules,hierarchical --steps 60",
-           "$corridor evaluate $trained --planners rules --steps 60 --scenario " + kSparse,
+           "$corridor evaluate $trained --planners rules --steps 60 --scenario $sparse",
            "$corridor hindsight $trained --planners rules",
            "$corridor drive $trained --seconds 3 --no-film",
            "$corridor redrive evaluated/paper rules_1002_0", "$corridor report $trained",
