@@ -182,18 +182,20 @@ TEST_F(Shell, AnEmptyFolderIsTakenForARunAndAFullOneIsNot) {
 }
 
 TEST_F(Shell, CtrlCEndsADriveAndAReportWithoutATrace) {
-  for (const std::string& command :
-       std::vector<std::string>{"drive '" + kTrained.string() + "' --seconds 1000 --out out",
-                                "report '" + run_.string() + "'"}) {
-    if (command.starts_with("report")) {
+  for (const auto& command : std::vector<std::vector<std::string>>{
+           {"drive", kTrained, "--seconds", "1000", "--out", "out"}, {"report", run_}}) {
+    if (command[0] == "report") {
       ASSERT_EQ(run_command(train_command(run_), kDeadline_s).status, 0);
       ASSERT_EQ(run_command({kCorridor, "evaluate", run_, "--steps", "400"}, kDeadline_s).status,
                 0);
     }
-    Command started({"/bin/bash", "-c", "echo begins; exec " + kCorridor + " " + command});
+    std::vector<std::string> script = {"/bin/bash", "-c", R"(echo begins; exec "$0" "$@")",
+                                       kCorridor};
+    script.insert(script.end(), command.begin(), command.end());
+    Command started(script);
     ASSERT_TRUE(started.wait_for("begins", 60.0));
-    // The drive is at its film then, the report wherever it is: it may even be done.
-    if (command.starts_with("drive")) {
+    // The drive is at its film then, the report wherever it is.
+    if (command[0] == "drive") {
       EXPECT_TRUE(started.wait_for("film", kDeadline_s));
     }
     started.signal(SIGINT);
