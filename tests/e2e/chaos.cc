@@ -62,6 +62,10 @@ Footprint footprint_of(const std::vector<Process>& processes, const fs::path& ru
   return result;
 }
 
+// Of a launcher that was told to end: beside much else, and after one of its processes was hung, it
+// may take long to see to it that all are gone.
+constexpr double kEnds_s = 300.0;
+
 class Chaos {
  public:
   Chaos(const ChaosSettings& settings, const std::function<void(const Footprint&)>& look)
@@ -165,7 +169,7 @@ class Chaos {
     const fs::path left = settings_.run.string() + ".left";
     fs::copy(settings_.run, left, fs::copy_options::recursive);
     signal_all(SIGKILL);
-    launcher_->finish(30.0);
+    launcher_->finish(kEnds_s);
     fs::remove_all(settings_.run);
     fs::rename(left, settings_.run);
     start_again();
@@ -173,7 +177,7 @@ class Chaos {
 
   // The launcher has been made to end with this status, or has come to its end just before.
   void resume(int status) {
-    const CommandResult ended = launcher_->finish(30.0);
+    const CommandResult ended = launcher_->finish(kEnds_s);
     if (ended.status == 0) {
       finished_ = true;
       return fingerprint();
@@ -191,7 +195,7 @@ class Chaos {
   }
 
   void check_end() {
-    const CommandResult ended = launcher_->finish(30.0);
+    const CommandResult ended = launcher_->finish(kEnds_s);
     finished_ = true;
     if (ended.status != 0) return trouble(fmt::format("status {}", ended.status), ended);
     fingerprint();
